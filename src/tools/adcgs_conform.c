@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-conform: every vector of a manifest against this library in every way that it can run, or against any program. */
+/** \file adcgs-conform: tries every vector of a manifest on this library, in every way that it can run, or on any program. */
 #include "config.h"
 
 #include "base/cpu.h"
@@ -30,7 +30,7 @@ typedef struct tally {
     adcgs_junit junit;
 } tally;
 
-/* All CPU levels, thread counts and ways of input, until one goes wrong. */
+/* Tries all CPU levels, thread counts and ways of input, until one fails. */
 static adcgs_outcome try_everywhere(const adcgs_vector *vector, const uint8_t *data, size_t bytes, int *runs,
                                     char what[ADCGS_WHAT])
 {
@@ -73,7 +73,7 @@ static void check_vector(const settings *s, const adcgs_manifest *manifest, cons
     adcgs_text_column(stdout, vector->id, ID_WIDTH);
     printf(" %-11s %2d frames %3d runs %6.0f ms  %s%s", kind, vector->n_frames, runs, 1000 * seconds, adcgs_outcome_name(outcome),
            outcome == ADCGS_OUTCOME_OK ? "" : ": ");
-    adcgs_text_show(stdout, what); /* may quote answers of a program */
+    adcgs_text_show(stdout, what); /* it may quote a program's answers */
     printf("\n");
     t->runs += runs;
     t->faults += outcome != ADCGS_OUTCOME_OK;
@@ -128,13 +128,13 @@ static int run(const adcgs_cli *cli, settings *s, const char *path)
     }
     adcgs_manifest_clear(&manifest);
     if (status == ADCGS_OK && t.vectors == 0)
-        status = adcgs_fail(&error, ADCGS_ERR_USAGE, "no vector is called %s", s->filter);
+        status = adcgs_fail(&error, ADCGS_ERR_USAGE, "no vector matches %s", s->filter);
     if (status == ADCGS_OK)
         status = adcgs_cli_flush(&error);
     return status != ADCGS_OK ? adcgs_cli_fail(cli, &error) : t.faults ? 1 : 0;
 }
 
-/** Where there is one; NULL: nowhere. */
+/** Returns the first manifest that exists, or NULL. */
 static const char *find_manifest(void)
 {
     static const char *const places[] = {MANIFEST_HERE, MANIFEST_INSTALLED};
@@ -151,31 +151,29 @@ int main(int argc, char **argv)
     int first = 0;
     const adcgs_option options[] = {
         {.name = "decoder", .kind = ADCGS_OPTION_STRING, .target = &s.program.command, .value = "COMMAND",
-         .help = "check this program in place of the library; the shell runs it, with\n{in} and {request} replaced by files"},
+         .help = "program to check instead of the library; the shell runs it, with\n{in} and {request} replaced by files"},
         {.name = "point", .kind = ADCGS_OPTION_CHOICE, .target = &s.point, .choices = points, .value = "POINT",
-         .help = "the point that the program claims: P, M, S or R (default R)"},
+         .help = "conformance point that the program claims: P, M, S or R\n(default R)"},
         {.name = "layers", .kind = ADCGS_OPTION_FLAG, .target = &s.program.layers,
-         .help = "the program claims that it can leave out layers: ask for that, too"},
+         .help = "the program claims that it can leave out layers: check that, too"},
         {.name = "timeout", .kind = ADCGS_OPTION_INT, .target = &s.program.timeout, .min = 1, .max = 3600, .value = "SECONDS",
-         .help = "time that the program has for a vector (default 20)"},
+         .help = "time limit of the program for a vector, seconds (default 20)"},
         {.name = "filter", .kind = ADCGS_OPTION_STRING, .target = &s.filter, .value = "PATTERN",
-         .help = "only vectors whose name matches, as in 'bad-geom-*'"},
-        {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &s.list, .help = "print names and titles, check nothing"},
+         .help = "names of the vectors to check, a pattern such as 'bad-geom-*'\n(default: all)"},
+        {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &s.list, .help = "print names and titles without checking"},
         {.name = "junit", .kind = ADCGS_OPTION_FILE, .target = &s.junit, .value = "FILE",
-         .help = "write the results as JUnit XML"},
+         .help = "results as JUnit XML (default: none)"},
         {.name = "self-test", .kind = ADCGS_OPTION_FLAG, .target = &s.selftest,
-         .help = "damage each expectation and each stream in memory, one at a time, and run\nprograms that lie, die and hang; "
-                 "require that the check notices"},
+         .help = "damage each expectation and each stream in memory, one at a time, and run\n"
+                 "programs that lie, crash and hang; require that the check notices"},
     };
     const adcgs_cli cli = {
         .program = "adcgs-conform",
         .operands = "[MANIFEST]",
         .summary = "Check a decoder against conformance vectors.",
-        .details = "Without MANIFEST it is conformance/manifest.json, here or else as installed in\n"
-                   CONFORMANCE_DIRECTORY ".\n"
-                   "Without --decoder the library is\n"
-                   "checked, at every CPU level that this machine has, with 1, 2 and 7 threads, with\n"
-                   "the input as a whole and in pieces of few bytes.",
+        .details = "The default MANIFEST is conformance/manifest.json, here or else as installed in\n"
+                   CONFORMANCE_DIRECTORY ".\nWithout --decoder, the library is checked at every CPU level of this machine,\n"
+                                         "with 1, 2 and 7 threads, with the input as a whole and in pieces of a few bytes.",
         .options = options,
         .n_options = ADCGS_COUNTOF(options),
         .max_operands = 1};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-dec: decode a stream and render frames from it. */
+/** \file adcgs-dec: decodes a stream and renders frames from it. */
 #include "config.h"
 
 #include "api/frame.h"
@@ -43,13 +43,13 @@ static void print_row(const settings *s, const char *hex, double seconds)
         printf("%.3f\n", 1e3 * seconds);
 }
 
-/** The stream to show, and the one beside it or NULL. */
+/** The stream to show, and the one next to it or NULL. */
 typedef struct streams {
     adcgs_decoder *decoder, *beside;
-    adcgs_live *live; /**< where decoder gets its bytes while frames are made; NULL: it has them */
+    adcgs_live *live; /**< source of the decoder's bytes during rendering; NULL: all bytes are present */
 } streams;
 
-/** What follows a frame's rendering: the picture made of it goes to the sink. */
+/** Finishes a rendered frame and passes the image to the sink. */
 static adcgs_status write_frame(const streams *from, const adcgs_camera_frame *frame, adcgs_sink *sink, adcgs_canvas *canvas,
                                 int index,
                                 adcgs_error *error)
@@ -58,7 +58,7 @@ static adcgs_status write_frame(const streams *from, const adcgs_camera_frame *f
     return adcgs_sink_write_with(sink, &canvas->shown, &canvas->extras, index, error);
 }
 
-/** Draw what the budget allows of the first frame, in all of them. */
+/** Renders all frames with the tiers that the budget allows for the first frame. */
 static adcgs_status fit_budget(const settings *s, const streams *from, const adcgs_camera_path *frames, adcgs_canvas *canvas,
                                adcgs_error *error)
 {
@@ -70,22 +70,22 @@ static adcgs_status fit_budget(const settings *s, const streams *from, const adc
     return ADCGS_OK;
 }
 
-/** Which frames there are; once all of the stream is there, whatever has to be said of them. */
+/** Finds the frames; prints remarks on them when the whole stream is present. */
 static adcgs_status make_frames(const settings *s, const streams *from, adcgs_camera_path *frames, adcgs_error *error)
 {
     adcgs_info info;
     ADCGS_TRY(adcgs_get_info(from->decoder, &info, sizeof info, error));
     if (info.truncated)
-        adcgs_cli_note(s->cli, "%s: the stream ends early; showing what is complete", s->input);
+        adcgs_cli_note(s->cli, "%s: the stream ends early; showing its complete part", s->input);
     ADCGS_TRY(adcgs_camera_path_make(frames, from->decoder, &s->request, error));
     if (frames->outside && (!from->live || from->live->over))
-        adcgs_cli_note(s->cli, "%s: %d of %d frame%s %s its first or last moment: it lasts from %g to %g s", s->input,
+        adcgs_cli_note(s->cli, "%s: %d of %d frame%s %s its first or last frame: the stream lasts from %g to %g s", s->input,
                        frames->outside, frames->n, adcgs_s((uint64_t)frames->n), frames->outside == 1 ? "shows" : "show",
                        info.time_start, info.time_end);
     return ADCGS_OK;
 }
 
-/** Wait until a frame is as it will stay, or it is known whether there is one. */
+/** Waits until a frame is final, or until it is known whether it exists. */
 static adcgs_status await_frame(const settings *s, const streams *from, adcgs_camera_path *frames, int index, adcgs_error *error)
 {
     if (!from->live || from->live->over)
@@ -93,11 +93,11 @@ static adcgs_status await_frame(const settings *s, const streams *from, adcgs_ca
     ADCGS_TRY(adcgs_live_wait(from->live, index < frames->n ? frames->frame[index].time : INFINITY, error));
     if (!from->live->over)
         return ADCGS_OK;
-    adcgs_camera_path_free(frames); /* a stream may last less long than it said */
+    adcgs_camera_path_free(frames); /* a stream may be shorter than its header says */
     return make_frames(s, from, frames, error);
 }
 
-/** Render all frames; all gets the digest of the frames together. */
+/** Renders all frames; *all receives the digest over all frames. */
 static adcgs_status render(const settings *s, const streams *from, adcgs_camera_path *frames, adcgs_sink *sink,
                            adcgs_canvas *canvas, adcgs_md5 *all, double *render_seconds, adcgs_error *error)
 {
@@ -163,7 +163,7 @@ static void note_size(const adcgs_cli *cli, const settings *s, const adcgs_sink 
                        width, height);
 }
 
-/** \return ADCGS_OK, or with *mismatch set when the digest is not the expected one. */
+/** \return ADCGS_OK; *mismatch is set if the digest is not the expected one. */
 static adcgs_status decode(const adcgs_cli *cli, const settings *s, const streams *from, int *mismatch, adcgs_error *error)
 {
     adcgs_info info;
@@ -205,7 +205,7 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
     return status;
 }
 
-/** Answer requests in place of rendering a clip. */
+/** Answers requests instead of rendering a clip. */
 static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **decoder, adcgs_error *error)
 {
     adcgs_requests requests;
@@ -225,7 +225,7 @@ static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **de
     return status;
 }
 
-/** Play in place of rendering a clip. */
+/** Plays instead of rendering a clip. */
 static adcgs_status play(const adcgs_cli *cli, const settings *s, int *mismatch, adcgs_error *error)
 {
     const adcgs_dec_play how = {.input = s->input, .script = s->script, .request = s->request, .config = s->config};
@@ -235,7 +235,7 @@ static adcgs_status play(const adcgs_cli *cli, const settings *s, int *mismatch,
     return status;
 }
 
-/** Show frames of a stream while it comes, where that can be. The beginning of what a pipe brings may be past. */
+/** Shows frames of a stream while it arrives, where possible. The beginning of a pipe's stream may be missing (tune-in). */
 static adcgs_status show_live(const adcgs_cli *cli, const settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
 {
     adcgs_live live;
@@ -252,7 +252,7 @@ static adcgs_status show_live(const adcgs_cli *cli, const settings *s, adcgs_dec
     return status;
 }
 
-/** What --time N% stands for: one of the stream's frames. */
+/** Resolves --time N% to one of the stream's frames. */
 static adcgs_status place_moment(settings *s, const adcgs_decoder *decoder, adcgs_error *error)
 {
     adcgs_info info;
@@ -264,7 +264,7 @@ static adcgs_status place_moment(settings *s, const adcgs_decoder *decoder, adcg
     return ADCGS_OK;
 }
 
-/** The stored cameras as a path, or a path as another file. */
+/** Writes the stored cameras as a path, or a path as another file. */
 static adcgs_status write_cameras(const settings *s, const adcgs_decoder *decoder, adcgs_error *error)
 {
     adcgs_camera_path frames;
@@ -276,7 +276,7 @@ static adcgs_status write_cameras(const settings *s, const adcgs_decoder *decode
     return status;
 }
 
-/** Open what is to be shown, and show it. */
+/** Opens the input and renders, plays or writes it. */
 static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
 {
     streams from = {0};
@@ -341,7 +341,7 @@ int main(int argc, char **argv)
     adcgs_http_close(&s.http_beside);
     adcgs_pool_free(&s.config.pool);
     if (adcgs_interrupted())
-        raise(adcgs_interrupted()); /* the shell shall see why the program ended; the handler is gone by now */
+        raise(adcgs_interrupted()); /* ends with the signal, so that the shell sees the reason; the handler is removed by now */
     if (status == ADCGS_OK)
         status = adcgs_cli_flush(&error);
     error.status = status;

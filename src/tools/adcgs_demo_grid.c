@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * adcgs-demo-grid: one picture to look at: some views of a scene in columns,
- * truth above, decoded in the middle, their difference below. Not installed.
+ * adcgs-demo-grid: one image of some views of a scene in columns: ground truth above, decoded view in the middle, difference
+ * below. Not installed.
  */
 #include "cli/cli.h"
 #include "layouts/open.h"
@@ -18,7 +18,7 @@ typedef struct grid {
 
 enum { ROW_TRUTH, ROW_DECODED, ROW_DIFFERENCE, ROWS };
 
-/* Views are taken evenly from the split; those of another size than the first are left out. */
+/* Takes views evenly from the split, and skips those of another size than the first. */
 static adcgs_status take(void *user, const adcgs_view_score *score, adcgs_error *error)
 {
     grid *const g = user;
@@ -73,12 +73,12 @@ int main(int argc, char **argv)
     int columns = 5, first = 0;
     const adcgs_option options[] = {
         {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_FILE, .target = &output, .value = "FILE",
-         .help = "picture to write (default: grid.png)"},
+         .help = "image to write (default: grid.png)"},
         {.name = "columns", .kind = ADCGS_OPTION_INT, .target = &columns, .min = 1, .max = 64, .value = "N",
          .help = "number of test views (default: 5)"},
     };
     const adcgs_cli cli = {.program = "adcgs-demo-grid", .operands = "FILE SCENE",
-                           .summary = "Lay out test views: truth, decoded, and four times their difference.", .options = options,
+                           .summary = "Lay out test views: truth, decoded, four times their difference.", .options = options,
                            .n_options = ADCGS_COUNTOF(options), .min_operands = 2, .max_operands = 2};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)

@@ -5,11 +5,11 @@
 
 #include <stdio.h>
 
-#define SCENES_MAX 128 /* that completion knows */
+#define SCENES_MAX 128 /* scenes that completion offers */
 
 static void show(void *user, int done, int total)
 {
-    adcgs_progress_show(user, "picture %d of %d", done, total);
+    adcgs_progress_show(user, "image %d of %d", done, total);
 }
 
 int main(int argc, char **argv)
@@ -23,31 +23,31 @@ int main(int argc, char **argv)
     double motion = 1.0, noise = 0.0, aside = 0.0;
     const adcgs_option options[] = {
         {.name = "scene", .kind = ADCGS_OPTION_STRING, .target = &scene, .value = "NAME", .choices = scenes,
-         .help = "which scene (default: demo)"},
+         .help = "name of the scene (default: demo)"},
         {.name = "size", .kind = ADCGS_OPTION_PAIR, .target = size, .min = 1, .max = 16384, .value = "WxH",
-         .help = "size of the pictures (default: the scene's own)"},
+         .help = "size of the images, pixels (default: the scene's own)"},
         {.name = "motion", .kind = ADCGS_OPTION_REAL, .target = &motion, .min = 0.001, .max = 10.0, .value = "FACTOR",
-         .help = "times the motion of all that moves (default: 1)"},
+         .help = "factor of all motion (default: 1)"},
         {.name = "moments", .kind = ADCGS_OPTION_INT, .target = &moments, .min = 1, .max = 100000, .value = "N",
-         .help = "moments that are filmed, in the same time (default:\nthe scene's own)"},
+         .help = "number of timestamps in the same duration (default:\nthe scene's own)"},
         {.name = "cameras", .kind = ADCGS_OPTION_INT, .target = &cameras, .min = 1, .max = 1000, .value = "N",
-         .help = "cameras for training (default: the scene's own)"},
+         .help = "number of training cameras (default: the scene's own)"},
         {.name = "noise", .kind = ADCGS_OPTION_REAL, .target = &noise, .min = 0.0, .max = 64.0, .value = "LEVELS",
-         .help = "deviation of noise in training's pictures, of 255\nlevels (default: 0)"},
+         .help = "standard deviation of noise in training images, of 255\nlevels (default: 0)"},
         {.name = "spoil", .kind = ADCGS_OPTION_STRING, .target = &spoil, .value = "NAME=X,...",
-         .help = "spoil training's views, each by so much: exposure,\nwhite, step, pose, shake, wrongpose, axes, sync,\n"
+         .help = "faults of the training views with their sizes: exposure,\nwhite, step, pose, shake, wrongpose, axes, sync,\n"
                  "drop, twice, before, inside, after"},
         {.name = "watch", .kind = ADCGS_OPTION_INT, .target = &watch, .min = 2, .max = 1000, .value = "N",
-         .help = "views for validation: N, one after the other, of one\ncamera that stays"},
+         .help = "number of validation views, consecutive, of one static\ncamera"},
         {.name = "aside", .kind = ADCGS_OPTION_REAL, .target = &aside, .min = 0.0, .max = 0.5, .value = "TURNS",
-         .help = "test from so far beside the last of training's\ncameras (default 0: from among them)"},
+         .help = "distance of the test camera from the last training\ncamera, turns (default 0: among the training cameras)"},
         {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_FILE, .target = &directory, .value = "DIR",
          .help = "folder to write (default: demo-scene)"},
         {.name = "format", .kind = ADCGS_OPTION_CHOICE, .target = &format, .value = "FORMAT", .choices = formats,
-         .help = "format of the pictures: png or ppm (default: png)"},
+         .help = "format of the images: png or ppm (default: png)"},
         {.name = "threads", .kind = ADCGS_OPTION_INT, .target = &threads, .min = 0, .max = 256, .value = "N",
          .help = "threads (default: one per CPU)"},
-        {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &list, .help = "list the scenes and leave"},
+        {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &list, .help = "list the scenes and exit"},
     };
     const adcgs_cli cli = {.program = "adcgs-demo-scene",
                            .operands = "",

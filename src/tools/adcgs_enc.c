@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-enc: learn a scene from posed pictures and write it to one file. */
+/** \file adcgs-enc: trains a scene from posed images and writes it to one file. */
 #include "config.h"
 
 #include "base/cpu.h"
@@ -37,7 +37,9 @@
 
 /* ---- Configuration ---- */
 
-/** Nothing of a model's size follows from the scene: what is decided later needs these decisions. */
+/**
+ * Settings of --fixed: no decision on the model's size depends on the scene. Later decisions need these, so they are off as well.
+ */
 #define FIXED "detail_anchors=0,still_below=0,decide_at=2,prune_units_at=2"
 
 static adcgs_status configure(adcgs_train_config *c, const adcgs_enc_options *o, adcgs_cpu_level cpu, adcgs_error *error)
@@ -71,13 +73,13 @@ static adcgs_status configure(adcgs_train_config *c, const adcgs_enc_options *o,
     c->without_rounding |= o->uncompressed != NULL;
     ADCGS_TRY(adcgs_train_check(c, error));
     if (o->beginning && adcgs_train_lambda_from(c) >= 1)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--beginning: lambda has no say in this run, so its beginning has no end");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--beginning: lambda has no effect in this run, so leave out --beginning");
     return ADCGS_OK;
 }
 
 /* ---- Output ---- */
 
-/** Learn before the training, not after it, that a file cannot be written. The stream is read back: no pipe, no device. */
+/** Finds out before the training that a file cannot be written. The stream is read back, so no pipe or device is allowed. */
 static adcgs_status check_writable(const char *path, adcgs_error *error)
 {
     struct stat s;
@@ -89,7 +91,7 @@ static adcgs_status check_writable(const char *path, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** The model as plain numbers, next to the stream. */
+/** Writes the model as plain numbers, next to the stream. */
 static adcgs_status write_uncompressed(adcgs_enc_watcher *w, const adcgs_model *model, adcgs_error *error)
 {
     adcgs_buffer bytes;
@@ -110,7 +112,8 @@ static adcgs_status write_stream(adcgs_stream *stream, adcgs_enc_watcher *w, adc
         adcgs_raw_prepare(w->t->f);
     adcgs_status status = adcgs_enc_encode(stream, &bytes, w, pool, error);
     if (status == ADCGS_OK && w->t->config.target == ADCGS_TARGET_SIZE && bytes.size > w->o->size)
-        status = adcgs_fail(error, ADCGS_ERR_USAGE, "%s: not written, since a single anchor and its networks take %zu bytes",
+        status = adcgs_fail(error, ADCGS_ERR_USAGE, "%s: not written, since a single anchor and its networks take %zu bytes: "
+                                                    "give a larger --size",
                             w->o->output, bytes.size);
     if (status == ADCGS_OK)
         status = adcgs_atomic_save(w->o->output, bytes.data, bytes.size, error);
@@ -120,7 +123,7 @@ static adcgs_status write_stream(adcgs_stream *stream, adcgs_enc_watcher *w, adc
     return status;
 }
 
-/** Who names a video gets a stream, which no player of videos plays. */
+/** Warns if the output is named like a video or another format, since no other player plays a stream. */
 static void note_extension(const adcgs_cli *cli, const char *path)
 {
     static const char *const others[] = { "mp4", "mkv", "webm", "mov", "avi", "y4m", "gif", "png", "jpg", "jpeg", "html",
@@ -128,11 +131,11 @@ static void note_extension(const adcgs_cli *cli, const char *path)
     const char *const extension = adcgs_extension(path);
     for (size_t i = 0; i < ADCGS_COUNTOF(others); i++)
         if (!strcasecmp(extension, others[i]))
-            adcgs_cli_note(cli, "%s: this file will hold an adcgs stream, not %s: name it .adcgs, and let adcgs-dec or "
-                           "adcgs-share make others of it", path, others[i]);
+            adcgs_cli_note(cli, "%s: this file will hold an adcgs stream, not %s: name it .adcgs, and convert it with adcgs-dec "
+                                "or adcgs-share", path, others[i]);
 }
 
-/** No output may take another's place. */
+/** Refuses two outputs of the same name. */
 static adcgs_status check_distinct(const adcgs_enc_options *o, adcgs_error *error)
 {
     const char *const names[] = { o->output, o->beginning, o->uncompressed, o->checkpoint, o->log, o->preview };
@@ -170,7 +173,7 @@ static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job,
     adcgs_stream_init(&stream);
     status = write_stream(&stream, w, job->pool, error);
     adcgs_stream_clear(&stream, NULL);
-    if (status != ADCGS_OK && status != ADCGS_ERR_DATA) /* which a stream cannot hold: to encode it again would fail again */
+    if (status != ADCGS_OK && status != ADCGS_ERR_DATA) /* the stream cannot hold the scene: encoding it again would fail again */
         adcgs_enc_rescue(job->cli, w, status);
     if (status == ADCGS_OK)
         status = report(w, job, w->last.spent, met, error);
@@ -198,7 +201,7 @@ static adcgs_status encode_segments(adcgs_enc_watcher *w, const adcgs_enc_job *j
 
 /* ---- The program ---- */
 
-/** Learn, before anything long begins, what is wrong with the options. */
+/** Checks the options before anything long begins. */
 static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_scene_options *scene, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
@@ -220,9 +223,9 @@ static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_scen
     return o->uncompressed ? check_writable(o->uncompressed, error) : ADCGS_OK;
 }
 
-#define PART_NAME 20 /* bytes of ".<number>.adcgs" that are added to a state's name for parts, at most */
+#define PART_NAME 20 /* most bytes that a part's name adds to the state's: ".<number>.adcgs" */
 
-/** Where a run keeps its state: with --checkpoint there, else where it went on from, else beside its output. */
+/** Names the run's state: the file of --checkpoint, else the one that the run continues, else one next to its output. */
 static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
 {
     const adcgs_enc_options *o = w->o;
@@ -237,8 +240,8 @@ static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
     memcpy(w->state, w->base, n);
     const char *const slash = strrchr(w->base, '/');
     if (strlen(slash ? slash + 1 : w->base) + (o->has_segment ? PART_NAME : 0) > NAME_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "the name of the run's state is longer than %d bytes, with the ending that "
-                          "it has behind the output's: give a shorter one with --checkpoint", NAME_MAX);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "the name of the run's state, with its suffix, is longer than %d bytes: give a "
+                                                  "shorter one with --checkpoint", NAME_MAX);
     return ADCGS_OK;
 }
 
@@ -261,7 +264,7 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     ADCGS_TRY(prepare(job, w, &scene, error));
     const int follows = job->ranks && job->ranks->rank;
     const uint32_t shared = o->live || o->finish ? 1 : job->config.batch;
-    if (follows && (!o->has_segment || o->live) && (uint32_t)job->ranks->rank >= shared) /* there is nothing to share */
+    if (follows && (!o->has_segment || o->live) && (uint32_t)job->ranks->rank >= shared) /* this rank has no views to share */
         return adcgs_rank_follow(w, job, error);
     if (!follows)
         ADCGS_TRY(open_log(w, error));
@@ -274,7 +277,7 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
     if (!follows)
         adcgs_enc_tell_remarks(job->cli, job->scene);
-    adcgs_progress_show(&w->progress, "scene     %u view%s for training, read in %.0f s",
+    adcgs_progress_show(&w->progress, "scene   %u training view%s, read in %.0f s",
                         job->scene->n_views[ADCGS_SPLIT_TRAIN], adcgs_s(job->scene->n_views[ADCGS_SPLIT_TRAIN]),
                         adcgs_seconds() - o->started.clock);
     if (w->preview.path)
@@ -307,7 +310,7 @@ static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, con
     if (w.log && fclose(w.log))
         adcgs_fail(&w.log_error, ADCGS_ERR_IO, "%s: cannot write the log", o->log);
     if (w.log_error.status != ADCGS_OK)
-        adcgs_cli_error(cli, ADCGS_OK, "%s; the run went on without it", w.log_error.text);
+        adcgs_cli_error(cli, ADCGS_OK, "%s; the run continued without it", w.log_error.text);
     adcgs_buffer_clear(&w.changes);
     adcgs_enc_team_clear(&w.team);
     free(w.base);
@@ -326,16 +329,16 @@ static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, con
 static const adcgs_cli program = {
     .program = "adcgs-enc",
     .operands = "SCENE",
-    .summary = "Learn a dynamic scene from posed pictures and write it to one file.",
+    .summary = "Train a dynamic scene from posed images and write it to one file.",
     .details = "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D, COLMAP or\n"
-               "Dynamic 3D Gaussians, a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB), of which\n"
-               "it renders views. Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or\n"
+               "Dynamic 3D Gaussians, a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB), whose\n"
+               "views are rendered. Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or\n"
                "millions: 20k, 2M.",
     .min_operands = 0,
-    .max_operands = OPERANDS_MAX, /* one is expected: the message depends on the others */
+    .max_operands = OPERANDS_MAX, /* one is expected; the message depends on the others */
 };
 
-/** Other players take a file of splats for each timestamp. */
+/** Reports surplus operands. Other players take a file of splats for each timestamp. */
 static int tell_surplus(const adcgs_cli *cli, int n, char **operands)
 {
     int splats = 0;
@@ -358,7 +361,7 @@ static int list_settings(const adcgs_cli *cli, const adcgs_enc_options *o)
     return adcgs_cli_leave(cli, 0);
 }
 
-/** What --live goes with; as parse(). */
+/** Checks the options that --live excludes. Returns like parse(). */
 static int check_live(const adcgs_cli *cli, adcgs_enc_options *o)
 {
     if (!o->has_segment)
@@ -368,14 +371,14 @@ static int check_live(const adcgs_cli *cli, adcgs_enc_options *o)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--live excludes --size, --psnr, --beginning, --uncompressed, --time-limit, "
                                "--frames, --fps, --checkpoint, --dataset, --or-whole and --fade");
     if (o->has_delay && o->delay <= o->segment)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay %g: a segment of %g s is learnt when its end was filmed: give more "
-                               "than that, or a shorter --segment", o->delay, o->segment);
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay %g: a segment of %g s is trained after its end is filmed: give a "
+                                                     "longer delay, or a shorter --segment", o->delay, o->segment);
     if (o->json && !strcmp(o->output, "-"))
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--json and -o - both want standard output");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--json and -o - both write to standard output");
     return -1;
 }
 
-/** -1 to go on, else the exit code to leave with. */
+/** Returns -1 to continue, else the exit code. */
 static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
 {
     const adcgs_setting *const lambda = adcgs_setting_find("lambda"), *const iterations = adcgs_setting_find("iterations");
@@ -385,106 +388,111 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     adcgs_setting_names(names);
     const adcgs_option options[] = {
         { "output", 'o', ADCGS_OPTION_FILE, &o->output, 0, 0, "FILE",
-          "write the stream here (required, but for --beginning)", NULL, NULL },
+          "stream to write (required, except with --beginning)", NULL, NULL },
         { "preset", 'p', ADCGS_OPTION_STRING, &o->preset, 0, 0, "NAME",
           "draft, fast, medium, slow or paper (default fast)", adcgs_train_presets, NULL },
         { "lambda", 'l', ADCGS_OPTION_REAL, &o->lambda, lambda->min, lambda->max, "X",
-          "loss per mebibyte of features and networks: larger\nmakes smaller files (default: the preset's, times the\n"
-          "pictures' contrast over 0.22)", NULL, &o->has_lambda },
+          "loss per mebibyte of features and networks; a larger value\nmakes smaller files (default: the preset's, times the\n"
+          "images' contrast over 0.22)", NULL, &o->has_lambda },
         { "size", 's', ADCGS_OPTION_SIZE, &o->size, ADCGS_TARGET_SIZE_MIN, ADCGS_TARGET_SIZE_MAX, "BYTES",
-          "make the file at most this large (150k, 1.5M, 2MiB), by\nless than 3 %, instead of giving --lambda", NULL,
+          "maximum file size, reached within 3 % (150k, 1.5M, 2MiB);\nreplaces --lambda", NULL,
           &o->has_size },
         { "psnr", 0, ADCGS_OPTION_REAL, &o->psnr, ADCGS_TARGET_PSNR_MIN, ADCGS_TARGET_PSNR_MAX, "DB",
-          "make the file so small that the training views, decoded\nfrom it, have this mean PSNR, within 0.1; test views are\n"
-          "never looked at", NULL, &o->has_psnr },
+          "target mean PSNR of the training views, decoded from the\nfile, dB, +/- 0.1; the file is as small as it allows; test\n"
+          "views are never used", NULL, &o->has_psnr },
         { "iterations", 'n', ADCGS_OPTION_INT, &o->iterations, iterations->min, iterations->max, "N",
-          "length of the run (default: the preset's)", NULL, &o->has_iterations },
+          "iterations of the run (default: the preset's)", NULL, &o->has_iterations },
         { "scale", 0, ADCGS_OPTION_INT, &o->scale, scale->min, scale->max, "S",
-          "divide the pictures' size by this integer (default: 1, and\nmore for those of over 1600 pixels)", NULL,
+          "divisor of the image size, an integer (default: 1, more for\nimages of over 1600 pixels)", NULL,
           &o->has_scale },
         { "k", 0, ADCGS_OPTION_INT, &o->k, k->min, k->max, "N",
           "primitives per anchor, 1 to 16 (default: the preset's)", NULL, &o->has_k },
         { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, anchors->min, anchors->max, "N",
-          "budget of anchors (default: by how much there is to see\nin the pictures)", NULL, &o->has_max_anchors },
+          "budget of anchors (default: from the amount of detail in\nthe images)", NULL, &o->has_max_anchors },
         { "dataset", 0, ADCGS_OPTION_CHOICE, &o->dataset, 0, 0, "KIND",
-          "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, "
-          "colmap, adcgs, splats or\npanoptic",
+          "kind of the scene, instead of detecting it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs, splats\n"
+          "or panoptic",
           adcgs_dataset_names, NULL },
         { "frames", 0, ADCGS_OPTION_STRING, &o->frames, 0, 0, "A:B:STEP",
-          "take frames A, A + STEP, ... below B of videos, or such\nmoments of pictures; A, B or :STEP may be left out", NULL,
+          "frames A, A + STEP, ... below B of videos, or timestamps of\nimages, counted so; A, B or :STEP may be left out", NULL,
           NULL },
         { "fps", 0, ADCGS_OPTION_STRING, &o->fps, 0, 0, "N[/D]",
-          "frames per second of the frames that are taken (default:\nthe scene's, else 30)", NULL, NULL },
+          "rate of the selected frames, per second (default: the\nscene's, else 30)", NULL, NULL },
         { "points", 0, ADCGS_OPTION_FILE, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
         { "segment", 0, ADCGS_OPTION_SECONDS, &o->segment, 1e-3, 1e6, "S",
-          "cut time every S seconds, at the nearest moment; each segment\nis learnt from the one before, with a run of its own;\n"
-          "with --plan: learn segment number S alone", NULL, &o->has_segment },
+          "length of segments, seconds, cut at the nearest timestamp;\n"
+          "each is trained from the previous one, in a run of its own;\n"
+          "with --plan: number of the only segment to train", NULL, &o->has_segment },
         { "plan", 0, ADCGS_OPTION_FILE, &o->plan, 0, 0, "FILE",
-          "write a plan of the segments, with all settings, for them to\nbe learnt by --segment 1, 2, ... anywhere, and joined "
-          "by\nadcgs-join", NULL, NULL },
+          "plan of the segments, with all settings: written, or read\nwith --segment 1, 2, ..., which trains one part anywhere;\n"
+          "adcgs-join joins the parts", NULL, NULL },
         { "cut", 0, ADCGS_OPTION_SECONDS, &o->cut, 1e-3, 1e6, "S",
-          "with --plan: cut time every S seconds (default 2)", NULL, &o->has_cut },
+          "with --plan: length of segments, seconds (default 2)", NULL, &o->has_cut },
         { "key", 0, ADCGS_OPTION_SECONDS, &o->key, 0, 1e6, "S",
-          "with --segment: at least every S seconds a segment that needs\nno other, where playing can begin (default 10)", NULL,
+          "with --segment: longest interval of key segments, which need\n"
+          "no other and where playback can begin, seconds (default 10)", NULL,
           &o->has_key },
         { "fade", 0, ADCGS_OPTION_SECONDS, &o->fade, 0, 1e6, "S",
-          "with --segment: fade each segment in over S seconds, while\nthe one before goes on; at most a quarter of a segment\n"
-          "(default 0.2; 0: not at all)", NULL, &o->has_fade },
+          "with --segment: crossfade from the previous segment, seconds,\n"
+          "at most a quarter of a segment (default 0.2; 0: none)", NULL, &o->has_fade },
         { "or-whole", 0, ADCGS_OPTION_FLAG, &o->or_whole, 0, 0, NULL,
-          "with --segment: learn one segment for all of time, too, and\nwrite that if it is neither larger nor worse", NULL,
+          "with --segment: also train one segment of the whole time,\nand write that if it is neither larger nor worse", NULL,
           NULL },
         { "live", 0, ADCGS_OPTION_FLAG, &o->live, 0, 0, NULL,
-          "learn footage while it comes: SCENE is a scene file, or a\nfolder with scene.json; segments, of 2 s unless --segment\n"
-          "says otherwise, are written as they are done; -o - writes to\nstandard output; a camera's video may be -, standard "
-          "input", NULL, NULL },
+          "train footage while it arrives: SCENE is a scene file, or a\n"
+          "folder with scene.json; segments, of 2 s or as --segment says,\n"
+          "are written when done; -o - writes to standard output; a\ncamera's video may be -, standard input", NULL, NULL },
         { "delay", 0, ADCGS_OPTION_SECONDS, &o->delay, 1e-3, 1e6, "S",
-          "with --live: have all written within S seconds from when it\nwas filmed; effort falls if need be", NULL,
+          "with --live: maximum time from filming to writing, seconds;\neffort falls if needed (default: no limit)", NULL,
           &o->has_delay },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
-          "leave out coarse, fine, deformation (both), rate,\ndensification, anchors, removal or weight_steps", NULL, NULL },
+          "parts to leave out: coarse, fine, deformation (both), rate,\n"
+          "densification, anchors, removal or weight_steps", NULL, NULL },
         { "uncompressed", 0, ADCGS_OPTION_FILE, &o->uncompressed, 0, 0, "FILE",
-          "train without rate and rounding, write the model here\nas plain binary32 numbers; the stream is then the finest", NULL,
+          "file for the model as plain binary32 numbers, trained\nwithout rate and rounding; the stream is then the finest", NULL,
           NULL },
         { "fixed", 0, ADCGS_OPTION_FLAG, &o->fixed, 0, 0, NULL,
-          "let the preset alone say how large the model is, not the\nscene", NULL, NULL },
+          "model size from the preset alone, not from the scene", NULL, NULL },
         { "no-progression", 0, ADCGS_OPTION_FLAG, &o->no_progression, 0, 0, NULL,
-          "all anchors at once, instead of in tiers of which each adds\ndetail to those before; a few percent smaller", NULL,
+          "all anchors at once, instead of tiers that each add detail\nto the previous ones; a few percent smaller", NULL,
           NULL },
         { "set", 0, ADCGS_OPTION_STRING, &o->set, 0, 0, "NAME=VALUE,...",
-          "change settings of the preset; 'list' shows them all", names, NULL },
+          "changes of the preset's settings; 'list' shows them all", names, NULL },
         { "time-limit", 0, ADCGS_OPTION_SECONDS, &o->time_limit, 0, ADCGS_TIME_LIMIT_MAX, "S",
-          "be done with training S seconds from now, reading the scene\nincluded; the result then depends on the machine's speed",
+          "time until training ends, seconds, load time included; the\n"
+          "result then depends on the machine's speed (default: no limit)",
           NULL, NULL },
         { "seed", 0, ADCGS_OPTION_SIZE, &o->seed, seed->min, seed->max, "N", "seed of every random choice (default 1)", NULL,
           &o->has_seed },
         { "checkpoint", 0, ADCGS_OPTION_FILE, &o->checkpoint, 0, 0, "FILE",
-          "save the state of the run here every minute and when\ninterrupted (default then: the output's name.checkpoint)", NULL,
+          "file for the state of the run, saved every minute and when\n"
+          "interrupted (default then: the output's name.checkpoint)", NULL,
           NULL },
         { "checkpoint-every", 0, ADCGS_OPTION_SECONDS, &o->checkpoint_every, 0, 1e6, "S",
-          "seconds between such saves (default 60)", NULL, NULL },
+          "interval of such saves, seconds (default 60)", NULL, NULL },
         { "resume", 0, ADCGS_OPTION_FILE, &o->resume, 0, 0, "FILE",
-          "go on from such a state; same scene, same options; with\n--live: from the output that a run has left", NULL,
+          "state to continue from; same scene, same options (with --live:\nthe output that a run has left)", NULL,
           NULL },
         { "finish", 0, ADCGS_OPTION_FILE, &o->finish, 0, 0, "FILE",
-          "make a file of such a state as it is, without training on;\nsame scene, same options", NULL, NULL },
+          "state to make a stream of without more training; same scene,\nsame options", NULL, NULL },
         { "beginning", 0, ADCGS_OPTION_FILE, &o->beginning, 0, 0, "FILE",
-          "train as far as lambda does not matter, save the state\nhere and leave; runs with any lambda --resume it", NULL,
+          "file for the state up to which lambda has no effect; the run\nends there; runs with any lambda can --resume it", NULL,
           NULL },
         { "log", 0, ADCGS_OPTION_FILE, &o->log, 0, 0, "FILE",
-          "write progress as JSON lines; appended with --resume, and by\na plan's segments", NULL, NULL },
+          "progress as JSON lines; appended with --resume, and by a\nplan's segments", NULL, NULL },
         { "preview", 0, ADCGS_OPTION_FILE, &o->preview, 0, 0, "FILE",
-          "keep a picture here (PNG, JPEG, ...) of a view as it was\ntaken and as the model shows it, anew every 30 seconds",
+          "image (PNG, JPEG, ...) of a view as filmed and as rendered,\nupdated every 30 seconds",
           NULL, NULL },
         { "memory", 0, ADCGS_OPTION_SIZE, &o->memory, 1, 1e15, "BYTES",
-          "keep at most so much of the pictures in memory (2G), the\nothers in a file in TMPDIR (default: half of the\n"
-          "machine's); the result does not depend on it", NULL, NULL },
+          "maximum memory of images, bytes (2G); the others are kept in\n"
+          "a file in TMPDIR (default: half of the machine's); no effect\non the result", NULL, NULL },
         { "threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N",
-          "threads (default: one per CPU); the result does not\ndepend on it", NULL, NULL },
+          "threads (default: one per CPU); no effect on the result", NULL, NULL },
         { "cpu", 0, ADCGS_OPTION_CHOICE, &o->cpu, 0, 0, "LEVEL",
           "kernels: auto, scalar, avx2, avx512 (default auto)", adcgs_cpu_names, NULL },
         { "bf16", 0, ADCGS_OPTION_FLAG, &o->bf16, 0, 0, NULL,
-          "train the networks that draw in bf16, which is quicker;\nneeds a CPU with AVX512-BF16", NULL, NULL },
+          "train the networks of the rendered values in bf16, which is\nfaster; needs a CPU with AVX512-BF16", NULL, NULL },
         { "json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
     };
     cli->options = options;
@@ -494,7 +502,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     int first, code = adcgs_cli_parse(cli, argc, argv, &first);
     if (code < 0 && o->plan)
         code = adcgs_enc_plan_check(cli, o, &before);
-    cli->n_options = 0; /* the table ends with this function */
+    cli->n_options = 0; /* options is local to this function */
     if (code >= 0)
         return code;
     if (o->set && !strcmp(o->set, "list"))
@@ -507,7 +515,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     if (o->plan)
         return -1;
     if (o->has_cut)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--cut is for plans: give --plan, too");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--cut needs --plan");
     if (!o->output == !o->beginning)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --beginning FILE" :
                                                                   "no output: give -o FILE");
@@ -519,9 +527,9 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     if (o->live)
         return check_live(cli, o);
     if (o->has_delay)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay is for what is live: give --live, too");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay needs --live");
     if ((o->has_key || o->has_fade || o->or_whole) && !o->has_segment)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s is for segments: give --segment, too",
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s needs --segment",
                                o->has_key ? "key" : o->has_fade ? "fade" : "or-whole");
     if (o->has_segment && (o->has_size || o->beginning || o->uncompressed || o->time_limit > 0))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment excludes --size, --beginning, --uncompressed and --time-limit");
@@ -536,7 +544,7 @@ static adcgs_status run_program(const adcgs_cli *cli, adcgs_enc_options *o, cons
     if (ranks->size && !o->threads)
         o->threads = adcgs_enc_ranks_threads(ranks);
     if (ranks->rank && !o->has_segment)
-        o->quiet = 1; /* rank 0 says it for all */
+        o->quiet = 1; /* rank 0 reports for all */
     if (ranks->rank && o->log) { /* a log has one writer */
         snprintf(log, sizeof log, "%s.%d", o->log, ranks->rank);
         o->log = log;
@@ -570,7 +578,7 @@ int main(int argc, char **argv)
     }
     error.status = status;
     const int bad = adcgs_cli_fail(&cli, &error);
-    if (ranks.size && !adcgs_interrupted()) /* else all are told already */
+    if (ranks.size && !adcgs_interrupted()) /* an interrupt has reached all ranks already */
         adcgs_ranks_abort(&ranks, bad);
     return bad;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-eval: measure a stream against the pictures of a scene. */
+/** \file adcgs-eval: measures a stream against the images of a scene. */
 #include "config.h"
 
 #include "base/cpu.h"
@@ -23,12 +23,12 @@ typedef struct settings {
     const adcgs_cli *cli;
     const char *file, *scene, *images, *crop, *frames, *csv, *metrics;
     adcgs_config config;
-    adcgs_box box; /**< of --crop, where it gives numbers */
+    adcgs_box box; /**< box of --crop, if given as numbers */
     int quiet, split, cpu, json, as_is, beside, dataset, tiers, scale;
     int measure; /**< of --metrics: flags of metric/evaluate.h */
 } settings;
 
-/** What the views' scores go through. */
+/** Passes the views' scores to the report. */
 typedef struct report {
     const settings *set;
     adcgs_eval_report out;
@@ -43,35 +43,36 @@ static const char *const splits[] = {"train", "val", "test", NULL}; /* in the or
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
-        {"split", 0, ADCGS_OPTION_CHOICE, &s->split, 0, 0, "NAME", "views to compare: test (the default), val or train", splits,
+        {"split", 0, ADCGS_OPTION_CHOICE, &s->split, 0, 0, "NAME", "views to compare: test, val or train (default test)", splits,
          NULL},
         {"dataset", 0, ADCGS_OPTION_CHOICE, &s->dataset, 0, 0, "KIND",
-         "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, "
-          "colmap, adcgs, splats or\npanoptic",
+         "kind of the scene, instead of detecting it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs, splats\n"
+         "or panoptic",
          adcgs_dataset_names, NULL},
         {"frames", 0, ADCGS_OPTION_STRING, &s->frames, 0, 0, "A:B:STEP",
-         "the frames that the stream was made of, as for adcgs-enc", NULL, NULL},
+         "frames that the stream was made of, as for adcgs-enc", NULL, NULL},
         {"scale", 0, ADCGS_OPTION_INT, &s->scale, 1, 64, "S",
-         "divide the pictures' size by this integer before they are\nmeasured (default: as for the stream's training)", NULL,
+         "divisor of the image size for the measurement, an integer\n(default: as for the stream's training)", NULL,
          NULL},
-        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
-        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "draw the first N tiers of the stream alone, a coarser picture",
+        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
+        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "tiers of the stream to render; fewer give a coarser image",
          NULL, NULL},
-        {"images", 0, ADCGS_OPTION_FILE, &s->images, 0, 0, "DIR", "write the decoded views there as PNG", NULL, NULL},
+        {"images", 0, ADCGS_OPTION_FILE, &s->images, 0, 0, "DIR", "folder for the decoded views as PNG", NULL, NULL},
         {"beside", 0, ADCGS_OPTION_FLAG, &s->beside, 0, 0, NULL,
-         "in these pictures: truth, decoded view, and four times their\ndifference round grey, side by side", NULL, NULL},
+         "in these images: ground truth, decoded view, and four times\ntheir difference round grey, side by side", NULL, NULL},
         {"crop", 0, ADCGS_OPTION_STRING, &s->crop, 0, 0, "BOX",
-         "measure, too, where the box X0,Y0,Z0,X1,Y1,Z1 is seen;\npoints: a box round the scene's initial points", NULL, NULL},
+         "region to measure in addition, the visible part of the box\n"
+         "X0,Y0,Z0,X1,Y1,Z1; points: a box round the initial points", NULL, NULL},
         {"scene-background", 0, ADCGS_OPTION_FLAG, &s->as_is, 0, 0, NULL,
-         "put pictures with alpha on the scene's background\ninstead of the stream's", NULL, NULL},
-        {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
-        {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; figures do not depend on it",
+         "composite images with alpha onto the scene's background\ninstead of the stream's", NULL, NULL},
+        {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads (default: one per CPU)", NULL, NULL},
+        {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; no effect on the figures",
          adcgs_cpu_names, NULL},
         {"metrics", 0, ADCGS_OPTION_STRING, &s->metrics, 0, 0, "LIST",
-         "measure besides PSNR and SSIM: all, or a list of\nfitted-psnr, ms-ssim, dynamic-psnr,\n"
+         "metrics in addition to PSNR and SSIM: all, or a list of\nfitted-psnr, ms-ssim, dynamic-psnr,\n"
          "fitted-dynamic-psnr, static-variance and flicker",
          NULL, NULL},
-        {"csv", 0, ADCGS_OPTION_FILE, &s->csv, 0, 0, "FILE", "write a table there, a row for each view; - prints it", NULL,
+        {"csv", 0, ADCGS_OPTION_FILE, &s->csv, 0, 0, "FILE", "table with a row for each view; - prints it", NULL,
          NULL},
         {"json", 0, ADCGS_OPTION_FLAG, &s->json, 0, 0, NULL, "print one JSON object", NULL, NULL},
     };
@@ -103,14 +104,14 @@ static adcgs_status write_image(const report *r, const adcgs_view_score *score, 
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", r->set->images);
     const int folder = snprintf(path, size, "%s/", r->set->images);
     snprintf(path + folder, size - (size_t)folder, "%04u-%s.png", r->done, score->view->camera.name);
-    for (char *c = path + folder; *c; c++) /* whatever the name holds, the picture goes into this folder */
+    for (char *c = path + folder; *c; c++) /* any name stays a file in this folder */
         *c = *c == '/' || (unsigned char)*c < ' ' ? '_' : *c;
     const adcgs_status status = write_views(r, score, path, error);
     free(path);
     return status;
 }
 
-/** --crop as six numbers: 0, or -1 if they are no box. */
+/** Parses --crop as six numbers. Returns 0, or -1 if they are no box. */
 static int parse_box(const char *text, adcgs_box *box)
 {
     for (int i = 0; i < 6; i++) {
@@ -139,7 +140,7 @@ static adcgs_status on_view(void *user, const adcgs_view_score *score, adcgs_err
     return adcgs_interrupted() ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted") : ADCGS_OK;
 }
 
-/** Scenes give times in steps of a frame, and their alpha over a background: both are the stream's. */
+/** Opens the scene with the stream's frame rate, as the step of its times, and the stream's background for alpha. */
 static adcgs_status open_scene(adcgs_scene **scene, const settings *s, const adcgs_info *info, adcgs_error *error)
 {
     adcgs_scene_options options = {.has_background = !s->as_is, .rate = adcgs_fps_of(info->frame_rate), .dataset = s->dataset};
@@ -163,7 +164,7 @@ static adcgs_status compare_views(report *r, adcgs_decoder *decoder, const adcgs
     return adcgs_eval_report_end(&r->out, &e, error);
 }
 
-/** What the pictures were divided by that the stream was made of, as it says itself among its settings; 1 if it does not. */
+/** The divisor of the training images, from the settings in the stream; 1 if the stream has none. */
 static int scale_of(const adcgs_decoder *decoder)
 {
     const char *const value = adcgs_setting_in_list(adcgs_get_metadata(decoder, "settings"), "scale");
@@ -171,12 +172,13 @@ static int scale_of(const adcgs_decoder *decoder)
     return scale >= 1 && scale <= 64 ? scale : 1;
 }
 
-/** At the size that was asked for, or that of training. */
+/** Sets the requested size, or that of training. */
 static void choose_size(const settings *s, adcgs_decoder *decoder, adcgs_scene *scene)
 {
     scene->measured = s->scale ? s->scale : scale_of(decoder);
     if (!s->scale && scene->measured > 1)
-        adcgs_cli_note(s->cli, "%s: made of pictures of 1/%d of the size, and measured on such; --scale 1 takes them as they are",
+        adcgs_cli_note(s->cli, "%s: trained on images of 1/%d of the size, and measured on the same; --scale 1 measures at full "
+                               "size",
                        s->file, scene->measured);
 }
 
@@ -204,7 +206,7 @@ static adcgs_status compare(report *r, adcgs_decoder *decoder, adcgs_error *erro
 static adcgs_status check_operands(const settings *s, adcgs_error *error)
 {
     if (adcgs_kind_at(s->file)->class != ADCGS_KIND_STREAM && adcgs_kind_at(s->scene)->class == ADCGS_KIND_STREAM)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.100s is a stream and %.100s is none: the stream comes first, then the scene",
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.100s is a stream and %.100s is not: give the stream first, then the scene",
                           s->scene, s->file);
     return adcgs_kind_check(s->file, ADCGS_WANT_STREAM, error);
 }
@@ -244,8 +246,8 @@ int main(int argc, char **argv)
     make_options(&s, options);
     const adcgs_cli cli = {.program = "adcgs-eval",
                            .operands = "FILE SCENE",
-                           .summary = "Render the views of a scene from a stream and compare them with its pictures.",
-                           .details = "PSNR and SSIM are of frames rounded to 8 bits; speed is 1 / the median time to render.\n"
+                           .summary = "Render the views of a scene from a stream and compare them with its images.",
+                           .details = "PSNR and SSIM are of frames rounded to 8 bits; speed is 1 / the median render time.\n"
                                       "Exit status: 0 done, 2 usage, 3 input or output, 4 invalid data, 5 unsupported.",
                            .options = options,
                            .n_options = OPTION_COUNT,
@@ -264,7 +266,7 @@ int main(int argc, char **argv)
     if (s.metrics && adcgs_eval_parse_metrics(s.metrics, &s.measure))
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--metrics %.100s: expected " ADCGS_EVAL_METRICS, s.metrics);
     if (s.json && s.csv && !strcmp(s.csv, "-"))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--json and --csv - both want standard output: give --csv a file");
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--json and --csv - both write to standard output: give --csv a file");
     s.cli = &cli;
     s.file = argv[first];
     s.scene = argv[first + 1];

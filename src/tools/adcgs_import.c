@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-import: makes a scene of pictures or videos whose cameras nobody knows. */
+/** \file adcgs-import: makes a scene of images or videos with unknown cameras. */
 #include "config.h"
 
 #include "cli/text.h"
@@ -10,13 +10,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define FRAMES 300  /* of a film */
+#define FRAMES 300  /* default number of frames of a moving camera */
 #define TEST_EVERY 8
 
-/* What poses are no good beyond. */
-#define POSED_WELL 0.8 /* of the pictures */
-#define ERROR_FINE 1.5 /* pixels */
-#define TRACK_FINE 3.0 /* pictures */
+/* Thresholds of the warnings about poses. SPREAD_FINE: poses of a static camera, as a share of the rig's size. */
+#define POSED_WELL 0.8 /* images with a pose, share */
+#define ERROR_FINE 1.5 /* mean reprojection error, pixels */
+#define TRACK_FINE 3.0 /* images per point */
 #define SPREAD_FINE 0.02
 
 typedef struct arguments {
@@ -25,18 +25,18 @@ typedef struct arguments {
     int json, quiet;
 } arguments;
 
-/* ---- What came of it ---- */
+/* ---- The result ---- */
 
 static void print_text(const adcgs_import_report *r, const char *output)
 {
     adcgs_text_show(stdout, output);
     if (r->cameras)
-        printf(": %u of %u cameras that stand, %.2f s; %dx%d\n", r->found, r->cameras, r->seconds, r->width, r->height);
+        printf(": %u of %u static cameras, %.2f s; %dx%d\n", r->found, r->cameras, r->seconds, r->width, r->height);
     else
-        printf(": %u of %u pictures, %.2f s; %dx%d\n", r->posed, r->pictures, r->seconds, r->width, r->height);
-    printf("poses: %u points, %.2f pixels off on average, each in %.1f pictures", r->points, r->error, r->track);
+        printf(": %u of %u images, %.2f s; %dx%d\n", r->posed, r->pictures, r->seconds, r->width, r->height);
+    printf("poses: %u points, %.2f pixels off on average, each in %.1f images", r->points, r->error, r->track);
     if (r->cameras)
-        printf("; cameras' moments %.2g %% apart", 100.0 * r->spread);
+        printf("; poses of a camera %.2g %% apart", 100.0 * r->spread);
     printf("\nnext: adcgs-enc %s/scene.json -o FILE\n", output);
 }
 
@@ -65,28 +65,29 @@ static adcgs_status print_json(const adcgs_import_report *r, const char *output,
     return adcgs_json_write(&j, stdout, "standard output", error);
 }
 
-/** What better footage, or another look at it, would help. */
+/** Prints warnings that better footage or other options can fix. */
 static void warn(const adcgs_cli *cli, const adcgs_import_report *r)
 {
     if (r->found < r->cameras)
-        adcgs_cli_note(cli, "of %u of %u cameras no pose was found: they are left out", r->cameras - r->found, r->cameras);
+        adcgs_cli_note(cli, "no pose found for %u of %u cameras, which are left out", r->cameras - r->found, r->cameras);
     else if (!r->cameras && r->posed < POSED_WELL * r->pictures)
-        adcgs_cli_note(cli, "of %u of %u pictures no pose was found, and they are left out: sharper pictures that share more do "
-                       "better, or --frames more of a video", r->pictures - r->posed, r->pictures);
+        adcgs_cli_note(cli, "no pose found for %u of %u images, which are left out: take sharper images with more overlap, or "
+                            "more --frames of a video", r->pictures - r->posed, r->pictures);
     if (r->models > 1)
-        adcgs_cli_note(cli, "the pictures fell into %u scenes that share no points: the largest was taken", r->models);
+        adcgs_cli_note(cli, "the images form %u scenes that share no points: the largest was taken", r->models);
     if (r->error > ERROR_FINE)
-        adcgs_cli_note(cli, "points are %.1f pixels off on average, expected less than %g: poses or lens are not exact; try "
-                       "another --lens, or masks on what moves", r->error, ERROR_FINE);
+        adcgs_cli_note(cli, "points are %.1f pixels off on average, expected less than %g: poses or lens are inexact; try "
+                            "another --lens, or mask moving regions", r->error, ERROR_FINE);
     if (r->track < TRACK_FINE)
-        adcgs_cli_note(cli, "a point is in %.1f pictures on average, expected %g or more: pictures share little", r->track,
+        adcgs_cli_note(cli, "a point is in %.1f images on average, expected %g or more: take images with more overlap", r->track,
                        TRACK_FINE);
     if (r->spread > SPREAD_FINE)
-        adcgs_cli_note(cli, "cameras' poses of different moments are %.1f %% of the rig's size apart: do they stand still?",
+        adcgs_cli_note(cli, "a camera's poses at different times are %.1f %% of the rig's size apart: check that the cameras "
+                            "stand still",
                        100.0 * r->spread);
     if (r->is_numbered)
-        adcgs_cli_note(cli, "names of the pictures only count: if they are frames of a video, --fps N keeps their times; now "
-                       "this is a scene in which nothing moves");
+        adcgs_cli_note(cli, "the images' names are plain numbers: if they are frames of a video, --fps N keeps their times; "
+                            "without it this scene is static");
 }
 
 /* ---- Command line ---- */
@@ -94,37 +95,37 @@ static void warn(const adcgs_cli *cli, const adcgs_import_report *r)
 static const adcgs_cli program = {
     .program = "adcgs-import",
     .operands = "PHOTOS|VIDEO|VIDEOS...",
-    .summary = "Make a scene that adcgs-enc learns from, of pictures or videos whose cameras nobody knows.",
-    .details = "Operands are pictures or folders of pictures; or the video of one camera that moves; or videos of\n"
-               "cameras that stand and run in step. COLMAP finds the cameras.",
+    .summary = "Make a scene for adcgs-enc of images or videos with unknown cameras.",
+    .details = "Operands are images or folders of images; or the video of one moving camera; or videos of\n"
+               "static, synchronised cameras. COLMAP finds the cameras.",
     .min_operands = 1,
     .max_operands = 100000,
 };
 
-/** -1 to go on, else the exit code to leave with. */
+/** Returns -1 to continue, else the exit code. */
 static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
 {
     static const char *const lenses[] = {"radial", "pinhole", "opencv", "fisheye", NULL};
     adcgs_import_options *o = &a->import;
     const adcgs_option options[] = {
         {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &o->output, .value = "FOLDER",
-         .help = "the scene's folder, which is made (required)"},
+         .help = "folder of the scene, which is created (required)"},
         {.name = "fps", .kind = ADCGS_OPTION_STRING, .target = &a->fps, .value = "N[/D]",
-         .help = "pictures are frames of a film, so many a second, in the\norder of their names (default: all of one time)"},
+         .help = "frames per second, if images are frames of a film, in the\norder of their names (default: all of one time)"},
         {.name = "frames", .kind = ADCGS_OPTION_INT, .target = &o->frames, .min = 3, .max = 10000, .value = "N",
-         .help = "take at most N frames of a camera that moves, evenly\n(default 300)"},
+         .help = "number of frames of a moving camera, at most, taken evenly\n(default 300)"},
         {.name = "side", .kind = ADCGS_OPTION_INT, .target = &o->side, .min = 64, .max = 16384, .value = "PIXELS",
-         .help = "reduce pictures that are wider or higher (default 1600)"},
+         .help = "maximum width and height of images, pixels; larger images\nare reduced (default 1600)"},
         {.name = "masks", .kind = ADCGS_OPTION_STRING, .target = &o->masks, .value = "FOLDER",
-         .help = "pictures' masks, by their names or by those of cameras:\nwhat is black there is neither matched nor learnt"},
+         .help = "folder of masks with the images' or the cameras' names:\nblack regions are neither matched nor trained"},
         {.name = "lens", .kind = ADCGS_OPTION_CHOICE, .target = &o->lens, .choices = lenses, .value = "KIND",
          .help = "radial, pinhole, opencv or fisheye (default radial)"},
         {.name = "own-lens", .kind = ADCGS_OPTION_FLAG, .target = &o->own_lens,
-         .help = "each camera of a rig has a lens unlike the others'"},
+         .help = "an own lens for each camera of a rig"},
         {.name = "test", .kind = ADCGS_OPTION_INT, .target = &o->test_every, .min = 0, .max = 10000, .value = "N",
-         .help = "put every Nth view, or camera that stands, aside for\ntesting (default 8; 0: none)"},
+         .help = "interval of the views, or static cameras, kept for testing\n(default 8; 0: none)"},
         {.name = "colmap", .kind = ADCGS_OPTION_STRING, .target = &o->colmap, .value = "PROGRAM",
-         .help = "COLMAP, if it is not colmap on the path"},
+         .help = "COLMAP's program (default: colmap on the path)"},
         {.name = "threads", .letter = 't', .kind = ADCGS_OPTION_INT, .target = &o->threads, .min = 0, .max = 256, .value = "N",
          .help = "threads of COLMAP (default: one per CPU)"},
         {.name = "json", .kind = ADCGS_OPTION_FLAG, .target = &a->json, .help = "print the result as one JSON object on stdout"},
@@ -134,7 +135,7 @@ static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
     cli->n_options = ADCGS_COUNTOF(options);
     cli->quiet = &a->quiet;
     const int code = adcgs_cli_parse(cli, argc, argv, &first);
-    cli->n_options = 0; /* the table ends with this function */
+    cli->n_options = 0; /* options is local to this function */
     if (code >= 0)
         return code;
     o->inputs = argv + first;
@@ -176,7 +177,8 @@ int main(int argc, char **argv)
     char *output = strdup(a.import.output);
     if (!output)
         return adcgs_cli_error(&cli, ADCGS_ERR_MEMORY, "out of memory");
-    for (size_t n = strlen(output); n > 1 && output[n - 1] == '/'; n--) /* beside it, not in it, is what is unfinished */
+    for (size_t n = strlen(output); n > 1 && output[n - 1] == '/'; n--) /* unfinished output goes next to the folder, not into
+                                                                           it */
         output[n - 1] = 0;
     a.import.output = output;
     const int leave = import(&cli, &a);

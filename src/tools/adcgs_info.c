@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-info: what a stream holds and where its bytes are. */
+/** \file adcgs-info: prints the contents of a stream and the bytes of its parts. */
 #include "config.h"
 
 #include "base/cpu.h"
@@ -59,7 +59,7 @@ static void on_element(void *user, uint64_t bit, const char *element, const char
         last->segment = (unsigned)strtoul(value, NULL, 10);
 }
 
-/** Where a stream is read from, in order. */
+/** The source of a stream, read in order. */
 typedef struct origin {
     FILE *file;
     adcgs_http *http;
@@ -117,12 +117,12 @@ static void print_header(const adcgs_info_report *r, const char *name)
            i->segments == 1 ? "" : "s", i->frame_rate);
     printf("scene       origin %g %g %g, scale %g, axes %s, unit %s\n", i->scene_origin[0], i->scene_origin[1],
            i->scene_origin[2], i->scene_scale, i->axes, i->units);
-    printf("picture     colour %s, background %g %g %g, filter %g px^2\n", i->colour, (double)i->background[0],
+    printf("image     colour %s, background %g %g %g, filter %g px^2\n", i->colour, (double)i->background[0],
            (double)i->background[1], (double)i->background[2], (double)r->stream.screen_filter);
     if (r->stream.params.bodies)
         snprintf(bodies, sizeof bodies, r->stream.params.bodies == 1 ? ", %d body" : ", %d bodies", r->stream.params.bodies);
     printf("model       %u anchors (%u static%s%s), %u Gaussians of at most %d each, %u weights, %d of %d layer%s, ", i->anchors,
-           i->static_anchors, r->stream.params.spans ? ", others with spans" : "", bodies, i->gaussians, i->k, i->weights,
+           i->static_anchors, r->stream.params.spans ? ", others with lifetimes" : "", bodies, i->gaussians, i->k, i->weights,
            i->layers, adcgs_params_layers(&r->stream.params), adcgs_s((uint64_t)adcgs_params_layers(&r->stream.params)));
     printf("%d of %d tier%s\n", i->tiers_present, i->tiers, i->tiers == 1 ? "" : "s");
 }
@@ -160,7 +160,7 @@ static adcgs_status print_segments(const adcgs_info_report *r, adcgs_error *erro
                m->time_end, m->n, m->depth, (double)m->voxel, adcgs_info_count_gaussians(m), m->layers,
                adcgs_s((uint64_t)m->layers));
         if (m->reach > 0)
-            printf("  goes on for %g s, in which the next is faded in\n", m->reach);
+            printf("  crossfade of %g s into the next\n", m->reach);
         uint32_t same, refined;
         ADCGS_TRY(adcgs_info_kept(r, i, &same, &refined, error));
         if (m->predicted)
@@ -227,7 +227,8 @@ static adcgs_status write_points(const adcgs_info_report *r, const char *path, a
     const adcgs_status status = adcgs_points_write_from(&points, offset, path, error);
     if (status == ADCGS_OK && adcgs_offset_is(offset))
         fprintf(stderr,
-                "adcgs-info: %s: the scene is too far from the origin for binary32: positions are less %.17g %.17g %.17g\n", path,
+                "adcgs-info: %s: the scene is too far from the origin for binary32: %.17g %.17g %.17g was subtracted from "
+                "positions\n", path,
                 offset[0], offset[1], offset[2]);
     adcgs_points_free(&points);
     return status;
@@ -256,7 +257,7 @@ static adcgs_status print_report(const adcgs_info_report *r, const settings *s, 
     return adcgs_cli_flush(error);
 }
 
-/** Exit status 1: there are faults. */
+/** Exit status 1 if the stream has faults. */
 static int check(const adcgs_cli *cli, const settings *s, adcgs_error *error)
 {
     uint32_t faults = 0;
@@ -276,22 +277,22 @@ int main(int argc, char **argv)
         { "json", 'j', ADCGS_OPTION_FLAG, &s.json, 0, 0, NULL, "print one JSON object", NULL, NULL },
         { "bits", 'b', ADCGS_OPTION_FLAG, &s.bits, 0, 0, NULL, "list every chunk with its bits", NULL, NULL },
         { "trace", 't', ADCGS_OPTION_FLAG, &s.trace, 0, 0, NULL,
-          "print position in bits, name and value of every\nsyntax element", NULL, NULL },
+          "print bit position, name and value of every syntax\nelement", NULL, NULL },
         { "digest", 'd', ADCGS_OPTION_FLAG, &s.digest, 0, 0, NULL, "print the digest of each segment's model", NULL, NULL },
-        { "why", 'w', ADCGS_OPTION_FLAG, &s.why, 0, 0, NULL, "say why it has as many bytes as it has", NULL, NULL },
+        { "why", 'w', ADCGS_OPTION_FLAG, &s.why, 0, 0, NULL, "explain the size of the stream", NULL, NULL },
         { "points", 0, ADCGS_OPTION_FILE, &s.points, 0, 0, "FILE",
-          "write the anchors' positions and colours, as .ply or\n.drc (Draco), instead of a report", NULL, NULL },
-        { "check", 0, ADCGS_OPTION_FLAG, &s.check, 0, 0, NULL, "name all faults of a file, and what can be used of it", NULL,
+          "file for the anchors' positions and colours, .ply or\n.drc (Draco), instead of a report", NULL, NULL },
+        { "check", 0, ADCGS_OPTION_FLAG, &s.check, 0, 0, NULL, "list all faults of a file and its usable parts", NULL,
           NULL },
-        { "repair", 0, ADCGS_OPTION_FILE, &s.repair, 0, 0, "FILE", "the same, and write what can be used to this file", NULL,
+        { "repair", 0, ADCGS_OPTION_FILE, &s.repair, 0, 0, "FILE", "like --check, and write the usable parts to this file", NULL,
           NULL },
         { "bytes", 0, ADCGS_OPTION_SIZE, &s.bytes, 1, 1e12, "N",
-          "write a stream of at most N bytes (40k) to --output:\nwithout the finest tiers, as many as have to go", NULL,
+          "maximum size of a stream written to --output (40k); as\nmany of the finest tiers as necessary are left out", NULL,
           &s.has_bytes },
-        { "output", 'o', ADCGS_OPTION_FILE, &s.output, 0, 0, "FILE", "where --bytes writes", NULL, NULL },
+        { "output", 'o', ADCGS_OPTION_FILE, &s.output, 0, 0, "FILE", "file that --bytes writes", NULL, NULL },
     };
     const adcgs_cli cli = { .program = "adcgs-info", .operands = "FILE|URL|-",
-                            .summary = "Says what an adcgs stream holds and where its bytes are.", .options = options,
+                            .summary = "Print the contents of an adcgs stream and the bytes of its parts.", .options = options,
                             .n_options = ADCGS_COUNTOF(options), .min_operands = 1, .max_operands = 1 };
     adcgs_error error = { ADCGS_OK, "" };
     int first, code = adcgs_cli_parse(&cli, argc, argv, &first);
@@ -301,15 +302,15 @@ int main(int argc, char **argv)
     s.input = argv[first];
     r.trace = s.trace && !s.json;
     if (s.why && (s.json || s.bits || s.trace || s.digest || s.points || s.check || s.repair || s.has_bytes))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--why goes with no other option");
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--why excludes other options");
     if (s.points && (s.json || s.bits || s.trace || s.digest))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--points goes with no other option");
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--points excludes other options");
     if ((s.check || s.repair) && (s.json || s.bits || s.trace || s.digest || s.points))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--check and --repair go with no other option");
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--check and --repair exclude other options");
     if (s.has_bytes != (s.output != NULL))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--bytes and --output go together");
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--bytes and --output need each other");
     if (s.has_bytes && (s.json || s.bits || s.trace || s.digest || s.points || s.check || s.repair))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--bytes goes with --output and no other option");
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--bytes excludes options other than --output");
     if (s.check || s.repair)
         return check(&cli, &s, &error);
     adcgs_status status = read_report(&r, &s, &error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-join: check the parts of a plan, and put them together. */
+/** \file adcgs-join: checks the parts of a plan and joins them. */
 #include "config.h"
 
 #include "base/cpu.h"
@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define NAMED 8 /* parts that are missing */
+#define NAMED 8 /* missing parts that a message names */
 
 typedef struct join_options {
     const char *plan, *output;
@@ -30,9 +30,9 @@ typedef struct join_job {
     adcgs_pool *pool;
 } join_job;
 
-/* ---- What is there ---- */
+/* ---- Finding parts ---- */
 
-/** found: 0 if it is not there, 1 if it is, and right. */
+/** *found: 0 if the part is missing, 1 if it is present and valid. */
 static adcgs_status check_part(const join_job *j, uint32_t part, int *found, adcgs_error *error)
 {
     adcgs_stream one;
@@ -52,7 +52,7 @@ static int has_begun(const join_job *j, uint32_t part)
     return is_there;
 }
 
-/** A line for each; *code: 1 if a part is there, but wrong. */
+/** Prints a line for each part; *code: 1 if a part is present, but invalid. */
 static adcgs_status list(const join_job *j, int *code, adcgs_error *error)
 {
     int before = 0;
@@ -74,7 +74,7 @@ static adcgs_status list(const join_job *j, int *code, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** All that are missing in one line, before anything else is read. */
+/** Reports all missing parts in one line, before any part is read. */
 static adcgs_status find_missing(const join_job *j, adcgs_error *error)
 {
     char names[NAMED * 12 + 8] = "";
@@ -115,7 +115,7 @@ static adcgs_status join(const join_job *j, adcgs_error *error)
     return status;
 }
 
-/** A file that is read may not be written. */
+/** Refuses an output that is also an input. */
 static adcgs_status check_output(const join_job *j, adcgs_error *error)
 {
     char *name;
@@ -125,7 +125,7 @@ static adcgs_status check_output(const join_job *j, adcgs_error *error)
         same = adcgs_atomic_same(j->o->output, name);
         free(name);
     }
-    return same ? adcgs_fail(error, ADCGS_ERR_USAGE, "%s: is read, so it cannot be written", j->o->output) : ADCGS_OK;
+    return same ? adcgs_fail(error, ADCGS_ERR_USAGE, "%s: is an input: give another output", j->o->output) : ADCGS_OK;
 }
 
 static adcgs_status run(join_job *j, int *code, adcgs_error *error)
@@ -146,22 +146,22 @@ static adcgs_status run(join_job *j, int *code, adcgs_error *error)
 static const adcgs_cli program = {
     .program = "adcgs-join",
     .operands = "PLAN.json",
-    .summary = "Check the parts that were learnt by a plan, and put them together to one stream.",
-    .details = "Plans are made by adcgs-enc SCENE --plan PLAN.json, parts by adcgs-enc SCENE --plan PLAN.json --segment 1,\n"
-               "2, ... Parts stay where they are.",
+    .summary = "Check the parts of a plan and join them to one stream.",
+    .details = "adcgs-enc SCENE --plan PLAN.json makes the plan, adcgs-enc SCENE --plan PLAN.json --segment 1,\n"
+               "2, ... the parts. Parts are not moved.",
     .min_operands = 1,
     .max_operands = 1,
 };
 
-/** -1 to go on, else the exit code to leave with. */
+/** Returns -1 to continue, else the exit code. */
 static int parse(adcgs_cli *cli, join_options *o, int argc, char **argv)
 {
     const adcgs_option options[] = {
-        { "output", 'o', ADCGS_OPTION_FILE, &o->output, 0, 0, "FILE", "write the stream here", NULL, NULL },
+        { "output", 'o', ADCGS_OPTION_FILE, &o->output, 0, 0, "FILE", "stream to write", NULL, NULL },
         { "list", 0, ADCGS_OPTION_FLAG, &o->list, 0, 0, NULL,
-          "print a line for each segment instead: its number, that of the\none it is learnt from (0: none), whether it is done, "
-          "begun,\n"
-          "ready to be learnt, waits for the other, or is bad, and its cost\nin seconds", NULL, NULL },
+          "print a line for each segment instead: its number, the number\n"
+          "of the segment it is trained from (0: none), its state (done,\n"
+          "begun, ready, waits for the other, or bad), and its cost in\nseconds", NULL, NULL },
         { "threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N", "threads (default: one per CPU)", NULL, NULL },
     };
     int first;
@@ -169,7 +169,7 @@ static int parse(adcgs_cli *cli, join_options *o, int argc, char **argv)
     cli->n_options = ADCGS_COUNTOF(options);
     cli->quiet = &o->quiet;
     const int code = adcgs_cli_parse(cli, argc, argv, &first);
-    cli->n_options = 0; /* the table ends with this function */
+    cli->n_options = 0; /* options is local to this function */
     if (code >= 0)
         return code;
     o->plan = argv[first];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-share: a stream as a page for browsers, in one file. */
+/** \file adcgs-share: makes a page for browsers of a stream, in one file. */
 #include "config.h"
 
 #include "cli/cli.h"
@@ -21,13 +21,13 @@ typedef struct settings {
     int quiet;
 } settings;
 
-/** What a page is made of. */
+/** The contents of a page. */
 typedef struct parts {
     uint8_t *page, *stream;
     size_t page_bytes, stream_bytes;
 } parts;
 
-/** A page shows what it gets to people who cannot mend it: a damaged stream is refused here. */
+/** Refuses a damaged stream, since viewers of the page cannot fix it. */
 static adcgs_status check_stream(const settings *s, const char *path, const parts *p, adcgs_error *error)
 {
     adcgs_decoder *decoder;
@@ -40,7 +40,7 @@ static adcgs_status check_stream(const settings *s, const char *path, const part
     status = adcgs_get_info(decoder, &info, sizeof info, error);
     adcgs_close(&decoder);
     if (status == ADCGS_OK && info.truncated)
-        adcgs_cli_note(s->cli, "%s: the stream ends early; the page will show what is complete", path);
+        adcgs_cli_note(s->cli, "%s: the stream ends early; the page will show its complete part", path);
     return status;
 }
 
@@ -50,7 +50,7 @@ static adcgs_status load_page(parts *p, const char *path, adcgs_error *error)
     if (status != ADCGS_ERR_IO)
         return status;
     const adcgs_error why = *error;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%.150s (the page for browsers: this build may be without it, or it is not installed)",
+    return adcgs_fail(error, ADCGS_ERR_IO, "%.150s (the page for browsers: this build may lack it, or it is not installed)",
                       why.text);
 }
 
@@ -64,9 +64,9 @@ static adcgs_status write_page(const settings *s, const char *path, const parts 
     const long bytes = ftell(out.file);
     ADCGS_TRY(adcgs_atomic_commit(&out, error));
     if (path)
-        adcgs_cli_note(s->cli, "%s: %ld bytes, a scene of %zu in it", s->output, bytes, p->stream_bytes);
+        adcgs_cli_note(s->cli, "%s: %ld bytes, with a scene of %zu bytes", s->output, bytes, p->stream_bytes);
     else
-        adcgs_cli_note(s->cli, "%s: %ld bytes, without a scene: it shows files dropped on it, and what ?src=URL names", s->output,
+        adcgs_cli_note(s->cli, "%s: %ld bytes, without a scene: it shows dropped files, and the stream of ?src=URL", s->output,
                        bytes);
     return ADCGS_OK;
 }
@@ -78,7 +78,7 @@ static adcgs_status share(const settings *s, const char *path, adcgs_error *erro
     if (!s->output)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "no output: give -o PAGE.html");
     if (path && adcgs_atomic_same(path, s->output))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: the page would take the place of the stream", path);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: the page would replace the stream: give another output", path);
     if (path)
         status = adcgs_kind_check(path, ADCGS_WANT_STREAM, error);
     if (status == ADCGS_OK && path)
@@ -99,16 +99,16 @@ int main(int argc, char **argv)
     settings s = {.page = PAGE_FILE};
     const adcgs_option options[] = {
         {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &s.output, .value = "PAGE.html",
-         .help = "the page to write"},
+         .help = "page to write"},
         {.name = "title", .kind = ADCGS_OPTION_STRING, .target = &s.title, .value = "TEXT",
-         .help = "title of the page; without it the file's name"},
+         .help = "title of the page (default: the file's name)"},
         {.name = "page", .kind = ADCGS_OPTION_STRING, .target = &s.page, .value = "FILE",
-         .help = "the page to put the scene into, in place of the one that is\ninstalled: " PAGE_FILE},
+         .help = "page that receives the scene, by default the installed one:\n" PAGE_FILE},
     };
     const adcgs_cli cli = {.program = "adcgs-share", .operands = "[FILE]",
-                           .summary = "Make a page for browsers of a stream: one file with the decoder and the scene in it.",
-                           .details = "Without FILE the page is without a scene: it shows files that are dropped on it,\n"
-                                      "and, on a web server, the stream that ?src=URL names.\n"
+                           .summary = "Make a page for browsers of a stream: one file with the decoder and the scene.",
+                           .details = "Without FILE the page has no scene: it shows files that are dropped on it,\n"
+                                      "and, on a web server, the stream of ?src=URL.\n"
                                       "Exit status: 0 done, 2 usage, 3 input or output, 4 invalid stream or page, 5 unsupported.",
                            .options = options, .n_options = ADCGS_COUNTOF(options), .min_operands = 0, .max_operands = 1,
                            .quiet = &s.quiet};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-sweep: a grid of encodings, each decoded and measured, as table and chart. */
+/** \file adcgs-sweep: encodes a grid, decodes and measures each stream, and makes a table and a chart. */
 #include "config.h"
 
 #include "cli/cli.h"
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/** The folder this program lies in, where its siblings are. */
+/** The folder of this program and its siblings. */
 static void find_programs(const char *argv0, char *out, size_t size)
 {
     const ssize_t n = readlink("/proc/self/exe", out, size - 1);
@@ -73,13 +73,13 @@ static int obey(const adcgs_cli *cli, const adcgs_sweep_request *request, const 
 static const adcgs_cli program = {
     .program = "adcgs-sweep",
     .operands = "SCENE",
-    .summary = "Encode a scene at several rates, measure each decoded file, draw the curve.",
-    .details = "Runs adcgs-enc, adcgs-eval and adcgs-info from the folder that adcgs-sweep itself lies in.",
+    .summary = "Encode a scene at several rates, measure each decoded file, plot the curve.",
+    .details = "Runs adcgs-enc, adcgs-eval and adcgs-info from the folder of adcgs-sweep itself.",
     .min_operands = 0, /* none with --collect */
     .max_operands = 1,
 };
 
-/** The sweep as text, for its page. NULL without memory. */
+/** The sweep's command line, for its page. NULL on allocation failure. */
 static char *write_command(const adcgs_sweep_request *request)
 {
     char *text = NULL;
@@ -91,7 +91,7 @@ static char *write_command(const adcgs_sweep_request *request)
     return fclose(memory) ? (free(text), NULL) : text;
 }
 
-/** The request of a folder that is collected, in place of the one that names it; what *past holds lives as long. */
+/** Replaces the request that names a folder by the folder's own request. *past has to outlive it. */
 static int recall(adcgs_cli *cli, adcgs_sweep_request *request, adcgs_sweep_past *past)
 {
     adcgs_error error;

@@ -20,7 +20,7 @@
 
 #define BLANKS " \t\r\n"
 #define DIGITS "0123456789"
-/* Numbers behind the word "camera" and its two integers: fx, fy, cx, cy, near plane and twelve of the matrix. */
+/* Numbers after the word "camera" and its two integers: fx, fy, cx, cy, near plane and twelve of the matrix. */
 #define CAMERA_NUMBERS 17
 
 const char *adcgs_fault_class(adcgs_status status)
@@ -41,7 +41,7 @@ const char *adcgs_fault_class(adcgs_status status)
 
 /* ---- Reading ---- */
 
-/* Room for one more element behind count, which is a power of two whenever the room is used up. */
+/* Makes room for one more element after count, which is a power of two whenever the room is used up. */
 static void *one_more(void *array, int count, size_t size)
 {
     if (count & (count - 1))
@@ -54,7 +54,8 @@ static const char *word(char **rest)
     return strtok_r(NULL, BLANKS, rest);
 }
 
-/* The end of what the grammar of requests has in front of a fraction, NULL if there is none: no sign but -, no zero too many. */
+/* Returns the end of a number's integer part in the grammar of requests, NULL if there is none: no sign except -, no leading
+   zeros. */
 static const char *whole_end(const char *text)
 {
     text += *text == '-';
@@ -62,14 +63,14 @@ static const char *whole_end(const char *text)
     return digits == 0 || (digits > 1 && *text == '0') ? NULL : text + digits;
 }
 
-/* Integers have one way to be written, so that what an answer repeats is what was asked. */
+/* Integers have a single form, so that the answer repeats the request exactly. */
 static int read_integer(const char *text, int min, int max, int *out)
 {
     const char *end = text ? whole_end(text) : NULL;
     return !end || *end || !strcmp(text, "-0") ? -1 : adcgs_parse_int(text, min, max, out);
 }
 
-/* What strtod() takes beyond the grammar (0x10, nan, .5, 1., a plus) is no number. */
+/* Refuses numbers that strtod() accepts beyond the grammar (0x10, nan, .5, 1., a plus). */
 static int read_number(const char *text, double *out)
 {
     const char *end = text ? whole_end(text) : NULL;
@@ -233,7 +234,7 @@ static adcgs_status answer_splats(const adcgs_request *q, adcgs_decoder *decoder
     return ADCGS_OK;
 }
 
-/* For a digest, a camera that the specification refuses gets the word "refused", a frame beyond its limit "declined". */
+/* Instead of a digest, a camera that the specification refuses gets the word "refused", a frame beyond its limit "declined". */
 static adcgs_status answer_frame(const adcgs_request *q, const adcgs_camera *camera, adcgs_decoder *decoder,
                                  adcgs_error *error)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What adcgs-dec makes of a rendered frame before it goes out. */
+/** \file Turns a rendered frame of adcgs-dec into its output. */
 #include "config.h"
 
 #include "tools/canvas.h"
@@ -43,7 +43,7 @@ void adcgs_canvas_clear(adcgs_canvas *canvas)
     *canvas = (adcgs_canvas){0};
 }
 
-/** What is left of the colours when the background that shows through them is taken away. */
+/** Subtracts the background that shows through the colours. */
 static void remove_background(adcgs_canvas *canvas)
 {
     const size_t n = (size_t)canvas->frame.width * (size_t)canvas->frame.height;
@@ -66,7 +66,7 @@ adcgs_status adcgs_canvas_finish(adcgs_canvas *canvas, adcgs_decoder *decoder, a
     if (beside) {
         ADCGS_TRY(adcgs_camera_path_rendered(&frame->camera,
                                        adcgs_render(beside, &frame->camera, frame->time, &canvas->second, error), error));
-        canvas->extras = (adcgs_sink_extras){0}; /* no camera sees two pictures */
+        canvas->extras = (adcgs_sink_extras){0}; /* two images have no common camera */
         adcgs_mosaic_place(&canvas->mosaic, 0, 0, (adcgs_samples){canvas->frame.rgb, 3, 1});
         adcgs_mosaic_place(&canvas->mosaic, 1, 0, (adcgs_samples){canvas->second.rgb, 3, 1});
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What adcgs-dec makes of a rendered frame before it goes out: alpha and depth with it, another stream beside it. */
+/** \file Turns a rendered frame of adcgs-dec into its output: with alpha and depth, or with another stream next to it. */
 #ifndef ADCGS_TOOLS_CANVAS_H
 #define ADCGS_TOOLS_CANVAS_H
 
@@ -8,20 +8,20 @@
 #include "tools/mosaic.h"
 
 typedef struct adcgs_canvas {
-    adcgs_frame frame;        /**< to render into */
-    adcgs_frame shown;        /**< what goes out, once adcgs_canvas_finish() has been called */
-    adcgs_sink_extras extras; /**< what goes with it */
-    float *alpha, *depth;     /**< of the size of the frame, or NULL */
+    adcgs_frame frame;        /**< render target */
+    adcgs_frame shown;        /**< the output, after adcgs_canvas_finish() */
+    adcgs_sink_extras extras; /**< output in addition to the colours */
+    float *alpha, *depth;     /**< of the frame's size, or NULL */
     float background[3];
-    adcgs_frame second;       /**< of the stream beside; without pixels if there is none */
+    adcgs_frame second;       /**< of the second stream; without pixels if there is none */
     adcgs_mosaic mosaic;
 } adcgs_canvas;
 
-/** Frames of this size; beside nonzero: room for a second one next to each. adcgs_canvas_clear() afterwards. */
+/** Allocates frames of this size. beside: nonzero for a second frame next to each. Call adcgs_canvas_clear() afterwards. */
 adcgs_status adcgs_canvas_init(adcgs_canvas *canvas, const int size[2], const adcgs_info *info, int alpha, int depth, int beside,
                                adcgs_error *error);
 void adcgs_canvas_clear(adcgs_canvas *canvas);
-/** After canvas->frame has been rendered: the rest. It may change the frame's values. beside may be NULL. */
+/** Completes the output after canvas->frame has been rendered. It may change the frame's values. beside may be NULL. */
 adcgs_status adcgs_canvas_finish(adcgs_canvas *canvas, adcgs_decoder *decoder, adcgs_decoder *beside,
                                  const adcgs_camera_frame *frame,
                                  adcgs_error *error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a budget allows. */
+/** \file Budgets of adcgs-dec. */
 #include "tools/dec_budget.h"
 
 #include "cli/cli.h"
@@ -43,7 +43,7 @@ adcgs_status adcgs_budget_open(adcgs_decoder **decoder, const adcgs_budget *budg
     return adcgs_open_stream(decoder, read_some, &from, config, error);
 }
 
-/** What a frame costs, in the budget's unit. */
+/** Measures the cost of a frame, in the budget's unit. */
 static adcgs_status measure(const adcgs_budget *budget, adcgs_decoder *decoder, const adcgs_camera *camera, double time,
                             adcgs_frame *frame, double *cost, adcgs_error *error)
 {
@@ -55,7 +55,7 @@ static adcgs_status measure(const adcgs_budget *budget, adcgs_decoder *decoder, 
             *cost += splats.opacity[i] > 0;
         return ADCGS_OK;
     }
-    ADCGS_TRY(adcgs_render(decoder, camera, time, frame, error)); /* memory is there after the first */
+    ADCGS_TRY(adcgs_render(decoder, camera, time, frame, error)); /* the first render allocates memory and is not timed */
     const double begin = adcgs_seconds();
     const adcgs_status status = adcgs_render(decoder, camera, time, frame, error);
     *cost = 1e3 * (adcgs_seconds() - begin);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Frames of a stream that is still coming. */
+/** \file Frames of a stream that is still arriving. */
 #include "config.h"
 
 #include "tools/dec_live.h"
@@ -12,15 +12,15 @@
 
 #define BUFFER_BYTES 65536
 
-/** Take bytes as they come, when there are some. */
+/** Waits for bytes and reads the available ones. */
 static adcgs_status fill(adcgs_live *live, adcgs_error *error)
 {
-    fflush(stdout); /* this may take long; what fails now fails again when the frames are done */
+    fflush(stdout); /* waiting may take long; a failure now repeats when the frames are done */
     live->at = 0;
     return adcgs_incoming_read(&live->in, live->buffer, BUFFER_BYTES, &live->n, error);
 }
 
-/** Decode what has been read to the end of one part, or read more, or note the end. */
+/** Decodes one part of the bytes read, or reads more, or notes the end. */
 static adcgs_status step(adcgs_live *live, adcgs_error *error)
 {
     adcgs_arrival arrived = ADCGS_ARRIVED_NOTHING;
@@ -40,7 +40,7 @@ static adcgs_status step(adcgs_live *live, adcgs_error *error)
     return status;
 }
 
-/** What is known of the stream; before the header nothing is, and no moment can be drawn. */
+/** The stream's info; before the header is read, no time can be rendered. */
 static adcgs_info look(const adcgs_live *live)
 {
     adcgs_info info;
@@ -49,12 +49,12 @@ static adcgs_info look(const adcgs_live *live)
     return info;
 }
 
-/** Whether frames, as far as they are known by now, are those that the whole stream will have. */
+/** True if the frames known by now are those of the whole stream. */
 static int are_known(const adcgs_info *info, const adcgs_camera_path_request *request)
 {
     const char *const camera = request->camera ? request->camera : "";
     const size_t n = strlen(camera);
-    const int turns = !strcmp(camera, "orbit") || !strcmp(camera, "spiral"); /* as fast as there are frames */
+    const int turns = !strcmp(camera, "orbit") || !strcmp(camera, "spiral"); /* their speed depends on the number of frames */
     if (!info->cameras || !strcmp(camera, "bullet") || (n > 5 && !strcmp(camera + n - 5, ".json")))
         return 0;
     return request->has_times || (!turns && isfinite(info->time_end));

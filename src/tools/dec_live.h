@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-dec - : a stream from a pipe or a server, of which frames are written while it comes. */
+/** \file adcgs-dec -: writes frames of a stream from a pipe or a server while it arrives. */
 #ifndef ADCGS_TOOLS_DEC_LIVE_H
 #define ADCGS_TOOLS_DEC_LIVE_H
 
@@ -10,22 +10,22 @@
 
 typedef struct adcgs_live {
     adcgs_incoming in;
-    adcgs_decoder *decoder; /**< the caller's */
-    uint8_t *buffer;        /**< bytes that were read, and not yet decoded: from at on, n of them */
+    adcgs_decoder *decoder; /**< owned by the caller */
+    uint8_t *buffer;        /**< read and not yet decoded: n bytes, from `at` on */
     size_t at, n;
-    int over;               /**< nothing more comes: the stream has ended, or the bytes have */
+    int over;               /**< nothing more arrives: the stream or the bytes have ended */
 } adcgs_live;
 
 /**
- * Open a stream, and read it until frames can be asked for: to the first segment that can be drawn, or to the end of the stream
- * where it is not known before which frames there are, or what their cameras. *decoder is the caller's to close, also after a
- * failure. Comes back early when a signal has interrupted it.
+ * Opens a stream and reads it until frames can be requested: to the first segment that can be rendered, or to the end of the
+ * stream if its frames or their cameras are unknown before. The caller closes *decoder, also after a failure. Returns early if a
+ * signal interrupts it.
  */
 adcgs_status adcgs_live_open(adcgs_live *live, adcgs_decoder **decoder, const char *path, const adcgs_config *config,
                              const adcgs_camera_path_request *request, adcgs_error *error);
 /**
- * Read on until no byte that is still to come can change what a moment shows; infinity: to the end. What was printed can be seen
- * while it waits. Segments that lie before the moment are forgotten. Comes back early when a signal has interrupted it.
+ * Reads until no later byte can change the frame at this time; infinity: to the end. Flushes standard output before it waits.
+ * Discards segments before this time. Returns early if a signal interrupts it.
  */
 adcgs_status adcgs_live_wait(adcgs_live *live, double time, adcgs_error *error);
 void adcgs_live_close(adcgs_live *live);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Opening a stream, wherever it is. */
+/** \file Opens a stream from any source. */
 #include "tools/dec_open.h"
 
 #include "io/kind.h"
@@ -9,7 +9,7 @@
 #include <errno.h>
 #include <stdlib.h>
 
-/** From what is read in order, as much as the budget has. */
+/** Opens a stream that is read in order, within the budget. */
 static adcgs_status open_in_order(adcgs_decoder **decoder, adcgs_read_fn read, void *user, const adcgs_dec_open_config *how,
                                   adcgs_error *error)
 {
@@ -17,7 +17,7 @@ static adcgs_status open_in_order(adcgs_decoder **decoder, adcgs_read_fn read, v
                                                    adcgs_open_stream(decoder, read, user, how->config, error);
 }
 
-/** Open as many bytes of a file as the budget has. */
+/** Opens the bytes of a file that the budget allows. */
 static adcgs_status open_part(adcgs_decoder **decoder, const char *input, const adcgs_dec_open_config *how, adcgs_error *error)
 {
     FILE *file = fopen(input, "rb");
@@ -30,7 +30,7 @@ static adcgs_status open_part(adcgs_decoder **decoder, const char *input, const 
     return status;
 }
 
-/** A damaged stream is looked at again and again. */
+/** Loads the whole stream first: a damaged stream is read several times. */
 static adcgs_status open_whole(adcgs_decoder **decoder, const char *input, const adcgs_dec_open_config *how, adcgs_error *error)
 {
     uint8_t *data;
@@ -43,7 +43,7 @@ static adcgs_status open_whole(adcgs_decoder **decoder, const char *input, const
     return status;
 }
 
-/** By ranges where that saves bytes and the server gives them, else in order, by one request. */
+/** Reads by ranges if that saves bytes and the server supports them, else in order, with one request. */
 static adcgs_status open_url(adcgs_decoder **decoder, adcgs_http **http, const char *input, const adcgs_dec_open_config *how,
                              adcgs_error *error)
 {
@@ -54,11 +54,11 @@ static adcgs_status open_url(adcgs_decoder **decoder, adcgs_http **http, const c
     ADCGS_TRY(adcgs_http_open(http, input, &config, error));
     const uint64_t size = adcgs_http_size(*http);
     if (config.any_order && !size)
-        adcgs_cli_note(how->cli, "%s: the server gives no ranges: reading all of it", input);
+        adcgs_cli_note(how->cli, "%s: the server supports no ranges: reading the whole stream", input);
     adcgs_status status = size ? adcgs_open_at(decoder, adcgs_http_read_at, *http, size, how->config, error) :
                                  open_in_order(decoder, adcgs_http_read, *http, how, error);
     if (status == ADCGS_OK && size)
-        return ADCGS_OK; /* it goes on reading */
+        return ADCGS_OK; /* the connection stays open for the decoder */
     if (status != ADCGS_OK)
         adcgs_error_locate(error, input);
     status = adcgs_http_explain(*http, status, error);
@@ -71,11 +71,11 @@ adcgs_status adcgs_dec_tell_joined(const adcgs_cli *cli, const adcgs_decoder *de
     adcgs_info info;
     ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     if (info.first_segment > 0)
-        adcgs_cli_note(cli, "%s: joined at segment %d, at %g s", name, info.first_segment, info.time_start);
+        adcgs_cli_note(cli, "%s: tuned in at segment %d, at %g s", name, info.first_segment, info.time_start);
     return ADCGS_OK;
 }
 
-/** Standard input, whose beginning may be past; a budget of bytes counts from the first. */
+/** Opens standard input, whose beginning may be missing. A budget of bytes counts from the first byte. */
 static adcgs_status open_pipe(adcgs_decoder **decoder, const adcgs_dec_open_config *how, adcgs_error *error)
 {
     adcgs_config config = *how->config;

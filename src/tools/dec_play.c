@@ -17,9 +17,9 @@
 
 #include <adcgs/decoder.h>
 
-#define STREAM_BYTES_MAX ((uint64_t)1 << 32) /* the player keeps them, to open the stream with other layers */
+#define STREAM_BYTES_MAX ((uint64_t)1 << 32) /* the player keeps the bytes to open the stream with other layers */
 
-/** What the player must know of the stream. The cameras are the caller's to free. */
+/** Collects the stream's properties for the player. The caller frees the cameras. */
 static adcgs_status look(const adcgs_dec_play *how, const adcgs_decoder *decoder, adcgs_play_settings *settings,
                          adcgs_camera **cameras, adcgs_error *error)
 {
@@ -33,7 +33,7 @@ static adcgs_status look(const adcgs_dec_play *how, const adcgs_decoder *decoder
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory for %d cameras", how->input, info->cameras);
     for (int i = 0; i < info->cameras; i++)
         ADCGS_TRY(adcgs_get_camera(decoder, i, &(*cameras)[i], error));
-    /* Where to begin is the first of one frame; the window keeps its shape, so it is not stretched to a size. */
+    /* The first view is the camera of a single frame; the window keeps its shape, so the view is not stretched to a size. */
     request.has_times = 1;
     request.begin = request.end = info->time_start;
     request.size[0] = request.size[1] = 0;
@@ -54,7 +54,7 @@ static void set_times(const adcgs_camera_path_request *request, adcgs_play_setti
     settings->start = settings->paused ? request->begin : settings->begin;
 }
 
-/** Decode what has come, until where to begin is known: to the cameras, or to what can be drawn if there are none before. */
+/** Decodes the available bytes until the first view is known: to the cameras, or to the first segment that can be rendered. */
 static adcgs_status decode_parts(adcgs_decoder *decoder, adcgs_feed *feed, adcgs_error *error)
 {
     uint8_t piece[4096];
@@ -84,7 +84,7 @@ static adcgs_status decode_front(adcgs_decoder *decoder, adcgs_feed *feed, adcgs
     return status;
 }
 
-/** A decoder that knows what stands in front of the stream. */
+/** Opens a decoder that knows the parts before the first segment. */
 static adcgs_status open_front(adcgs_decoder **decoder, const adcgs_play_source *from, const adcgs_config *config,
                                adcgs_error *error)
 {
@@ -100,7 +100,7 @@ static adcgs_status open_front(adcgs_decoder **decoder, const adcgs_play_source 
     return status;
 }
 
-/** Play what settings->source names. */
+/** Plays settings->source. */
 static adcgs_status play(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
 {
     adcgs_decoder *decoder = NULL;
@@ -108,7 +108,7 @@ static adcgs_status play(const adcgs_dec_play *how, adcgs_play_settings *setting
     adcgs_status status = open_front(&decoder, &settings->source, &settings->config, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = look(how, decoder, settings, &cameras, error);
-    adcgs_close(&decoder); /* the player opens it on its own thread */
+    adcgs_close(&decoder); /* the player opens the stream on its own thread */
     set_times(&how->request, settings);
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = adcgs_play_run(settings, failed, error);
@@ -128,7 +128,7 @@ static adcgs_status play_file(const adcgs_dec_play *how, adcgs_play_settings *se
     return status;
 }
 
-/** From its first bytes on, or of a pipe from the next key where these are past. */
+/** Plays from the first bytes, or, if a pipe's first bytes are missing, from the next key. */
 static adcgs_status play_coming(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
 {
     settings->config.join = !adcgs_is_url(how->input);
@@ -144,7 +144,7 @@ adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_er
                                     .script = how->script, .interrupted = adcgs_interrupted};
     ADCGS_TRY(adcgs_kind_check(how->input, ADCGS_WANT_STREAM, error));
     memcpy(settings.size, how->request.size, sizeof settings.size);
-    /* What is damaged at a URL is looked at again and again. */
+    /* A damaged stream at a URL is read several times, so it is loaded first. */
     const int comes = adcgs_pipe_is(how->input) || (adcgs_is_url(how->input) && !how->config.conceal);
     return comes ? play_coming(how, &settings, failed, error) : play_file(how, &settings, failed, error);
 }

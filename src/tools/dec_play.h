@@ -5,17 +5,17 @@
 
 #include "camera/path.h"
 
-/** What the command line says about playing. */
+/** Settings of the command line for playing. */
 typedef struct adcgs_dec_play {
     const char *input;           /**< the stream's file */
     const char *script;          /**< NULL: the user plays */
-    adcgs_camera_path_request request; /**< its camera is where to begin; one time is where to begin paused; the window's size */
+    adcgs_camera_path_request request; /**< its camera is the first view; a single time starts paused; the window's size */
     adcgs_config config;
 } adcgs_dec_play;
 
 /**
- * Play until the user leaves. *failed is set when an expectation of the script did not hold; error then says which,
- * though the status is ADCGS_OK.
+ * Plays until the user leaves. *failed is set if an expectation of the script did not hold; error then names it, though the
+ * status is ADCGS_OK.
  */
 adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_error *error);
 

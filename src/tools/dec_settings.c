@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The options of adcgs-dec, and which go with which. */
+/** \file The options of adcgs-dec and their combinations. */
 #include "config.h"
 
 #include "tools/dec_settings.h"
@@ -15,80 +15,81 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPT
     static const char *const codecs[] = {"h264", "hevc", "vp9", "av1", "mpeg4", "ffv1", "prores", "qtrle", NULL};
     const adcgs_option table[ADCGS_DEC_OPTIONS] = {
         {"output", 'o', ADCGS_OPTION_FILE, &s->output, 0, 0, "TARGET",
-         "write frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.mp4 (.mov .mkv .webm .avi), clip.y4m, pixels.raw,\n"
+         "target of frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.mp4 (.mov .mkv .webm .avi), clip.y4m, pixels.raw,\n"
          "or - for standard output", NULL, NULL},
         {"format", 'f', ADCGS_OPTION_STRING, &s->format, 0, 0, "NAME",
-         "y4m, raw, null, an image's or a video's extension;\nwithout it the target's name decides, and - is y4m", formats, NULL},
+         "y4m, raw, null, an image's or a video's extension\n(default: by the target's name; - is y4m)", formats, NULL},
         {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
         {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL,
          NULL},
         {"linear", 0, ADCGS_OPTION_FLAG, &s->linear, 0, 0, NULL, "linear light in EXR instead of sRGB's curve", NULL, NULL},
         {"splats", 0, ADCGS_OPTION_FILE, &s->splats, 0, 0, "FILE",
-         "write the splats instead of frames, as .ply, .spz, .glb or .sog:\nout.ply for one moment (the first without --time),\n"
-         "out%04d.ply for a span",
+         "target of splats instead of frames, as .ply, .spz, .glb or .sog:\n"
+         "out.ply for one time (default: the first), out%04d.ply for a\nrange of times",
          NULL, NULL},
         {"f-rest", 0, ADCGS_OPTION_INT, &s->rest_degree, 1, 3, "DEGREE",
-         "with --splats: give PLY the zeros of harmonics of this degree,\nfor programs that insist on them", NULL, NULL},
+         "with --splats: degree of the zero harmonics in PLY, for programs\nthat require them (default: none)", NULL, NULL},
         {"bits", 0, ADCGS_OPTION_INT, &s->bits, 8, 16, "N", "bits of a sample in PNG, TIFF and PPM: 8 or 16", NULL, NULL},
         {"alpha", 0, ADCGS_OPTION_FLAG, &s->alpha, 0, 0, NULL,
-         "leave the background out and write alpha: premultiplied in\nEXR, straight in PNG, TIFF and videos", NULL, NULL},
+         "write alpha and leave out the background: premultiplied in\nEXR, straight in PNG, TIFF and videos", NULL, NULL},
         {"depth", 0, ADCGS_OPTION_FLAG, &s->depth, 0, 0, NULL, "write depth as channel Z of EXR, in world units", NULL, NULL},
         {"codec", 0, ADCGS_OPTION_STRING, &s->video.codec, 0, 0, "NAME",
-         "a video's codec: h264, hevc, vp9, av1, ffv1, prores, qtrle or\nwhat FFmpeg calls an encoder; without it the name "
-         "decides", codecs, NULL},
-        {"crf", 0, ADCGS_OPTION_REAL, &s->video.crf, 0, 63, "Q", "a video's constant rate factor: less is better, and larger",
+         "codec of a video: h264, hevc, vp9, av1, ffv1, prores, qtrle or\n"
+         "the name of an FFmpeg encoder (default: by the target's name)", codecs, NULL},
+        {"crf", 0, ADCGS_OPTION_REAL, &s->video.crf, 0, 63, "Q", "constant rate factor of a video: lower is better, and larger",
          NULL, &s->video.has_crf},
         {"bitrate", 0, ADCGS_OPTION_SIZE, &s->video.bit_rate, 1000, 1e10, "BITS",
-         "a video's bits per second (8M) instead of a quality", NULL, NULL},
+         "bits per second of a video (8M) instead of a quality", NULL, NULL},
         {"codec-options", 0, ADCGS_OPTION_STRING, &s->video.options, 0, 0, "NAME=VALUE:...",
-         "options of FFmpeg's for the encoder, and pix_fmt", NULL, NULL},
+         "options of FFmpeg for the encoder, and pix_fmt", NULL, NULL},
         {"beside", 0, ADCGS_OPTION_FILE, &s->beside, 0, 0, "OTHER",
-         "show the frames of another stream to the right, through the\nsame cameras at the same times", NULL, NULL},
+         "other stream, shown to the right through the same cameras at\nthe same times", NULL, NULL},
         {"camera", 'c', ADCGS_OPTION_FILE, &s->request.camera, 0, 0, "WHICH",
-         "stored camera's name or index, orbit, spiral, bullet, or a path\n(.json, .chan, .usda); without it camera 0, or orbit "
-         "if none\nis stored",
+         "name or index of a stored camera, orbit, spiral, bullet, or a\n"
+         "path (.json, .chan, .usda) (default: camera 0, or orbit if\nnone is stored)",
          ways, NULL},
         {"cameras", 0, ADCGS_OPTION_FILE, &s->cameras, 0, 0, "PATH",
-         "write the stored cameras as a path, or the path that --camera\nnames, as PATH.json, .chan or .usda, and nothing else",
+         "file for the stored cameras, or for the path of --camera, as\nPATH.json, .chan or .usda; nothing else is written",
          NULL, NULL},
         {"rotation-order", 0, ADCGS_OPTION_CHOICE, &s->order, 0, 0, "ORDER",
-         "of the angles in .chan files: xyz (the default), zxy, ...", adcgs_rotation_orders, NULL},
+         "order of the angles in .chan files: xyz (the default), zxy, ...", adcgs_rotation_orders, NULL},
         {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B|N%",
-         "one time, or a span at the stream's frame rate, in seconds,\nor the frame at N percent of the stream; without it "
-         "everything", NULL, NULL},
+         "one time, or a range at the stream's frame rate, seconds, or\n"
+         "the frame at N percent of the stream (default: everything)", NULL, NULL},
         {"size", 's', ADCGS_OPTION_PAIR, s->request.size, 1, 16384, "WxH", "size of the frames; pixels keep their shape", NULL,
          NULL},
         {"fit", 0, ADCGS_OPTION_FLAG, &s->fit, 0, 0, NULL,
-         "in frames of another shape show all that the camera sees,\nand more on two sides (what --size does)", NULL, NULL},
+         "for frames of another shape: show the whole view of the\n"
+         "camera, and more on two sides (default with --size)", NULL, NULL},
         {"fill", 0, ADCGS_OPTION_FLAG, &s->request.fill, 0, 0, NULL,
-         "in frames of another shape show nothing but what the\ncamera sees, less on two sides", NULL, NULL},
-        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
-        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "draw the first N tiers of the stream alone, a coarser picture",
+         "for frames of another shape: show only the view of the\ncamera, less on two sides", NULL, NULL},
+        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
+        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "tiers of the stream to render; fewer give a coarser image",
          NULL, NULL},
         {"budget", 0, ADCGS_OPTION_STRING, &s->budget_text, 0, 0, "B",
-         "stop at so many bytes of the stream (40k), or draw as many\ntiers as so many splats (20000splats) or milliseconds a "
-         "frame\n(16ms) allow", NULL, NULL},
+         "limit of the bytes read (40k), or of splats (20000splats) or\n"
+         "milliseconds per frame (16ms), which the number of rendered\ntiers meets", NULL, NULL},
         {"md5", 0, ADCGS_OPTION_FLAG, &s->md5, 0, 0, NULL,
          "print the MD5 of each frame: its RGB values as little-endian\nbinary32, row by row", NULL, NULL},
-        {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "fail unless the frames together have this MD5", NULL, NULL},
+        {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "MD5 that all frames together must have", NULL, NULL},
         {"answer", 0, ADCGS_OPTION_FILE, &s->answer, 0, 0, "REQUESTS",
-         "answer a file of requests for digests, as the specification's\nclause on conformance says", NULL, NULL},
+         "file of requests for digests to answer, see the\nspecification's clause on conformance", NULL, NULL},
         {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL,
-         "print the milliseconds from opening to the first frame,\nthen those that each frame took to render", NULL, NULL},
-        {"play", 0, ADCGS_OPTION_FLAG, &s->play, 0, 0, NULL, "show the stream in a window, with a camera to move", NULL, NULL},
-        {"script", 0, ADCGS_OPTION_FILE, &s->script, 0, 0, "COMMANDS", "with --play: do what this file says, as a user would",
+         "print milliseconds from opening to the first frame, then the\nrender time of each frame", NULL, NULL},
+        {"play", 0, ADCGS_OPTION_FLAG, &s->play, 0, 0, NULL, "show the stream in a window, with a movable camera", NULL, NULL},
+        {"script", 0, ADCGS_OPTION_FILE, &s->script, 0, 0, "COMMANDS", "with --play: file of commands that replace the user's",
          NULL, NULL},
-        {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
-        {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; frames do not depend on it",
+        {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads (default: one per CPU)", NULL, NULL},
+        {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; no effect on the frames",
          adcgs_cpu_names, NULL},
         {"conceal", 0, ADCGS_OPTION_FLAG, &s->config.conceal, 0, 0, NULL,
-         "show what is whole of a damaged file, and say what is not", NULL, NULL},
+         "show the intact parts of a damaged file, and report faults", NULL, NULL},
         {"strict", 0, ADCGS_OPTION_FLAG, &s->config.strict_end, 0, 0, NULL, "refuse a stream that ends early", NULL, NULL},
     };
     memcpy(options, table, sizeof table);
 }
 
-/** A fault that is concealed. */
+/** Reports a concealed fault. */
 static void tell_fault(void *user, adcgs_log_level level, const char *text)
 {
     const adcgs_dec_settings *s = user;
@@ -101,25 +102,25 @@ int adcgs_dec_has_style(const adcgs_dec_settings *s)
     return s->video.codec || s->video.has_crf || s->video.bit_rate || s->video.options;
 }
 
-/** Whether an option is given that says how frames are written. */
+/** True if an option for the format of frames is given. */
 static int shapes_output(const adcgs_dec_settings *s)
 {
     return s->format || s->half || s->use_float || s->linear || s->bits || s->alpha || s->depth || s->beside ||
            adcgs_dec_has_style(s);
 }
 
-/** What goes with the player, and what does not. */
+/** Checks the options next to --play. */
 static adcgs_status check_play(const adcgs_dec_settings *s, adcgs_error *error)
 {
     const int written = s->output || shapes_output(s) || s->splats || s->cameras;
     if (s->play && (written || s->md5 || s->verify || s->answer || s->frametimes))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--play shows frames, and does nothing else with them");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--play excludes options that write or measure frames");
     if (s->script && !s->play)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--script needs --play");
     return ADCGS_OK;
 }
 
-/** T, A:B or N%. */
+/** Parses T, A:B or N%. */
 static adcgs_status check_times(adcgs_dec_settings *s, adcgs_error *error)
 {
     char *end;
@@ -150,12 +151,12 @@ adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
         return adcgs_fail(error, ADCGS_ERR_USAGE,
                           "--budget excludes --tiers, --play, --answer, --conceal, --splats, --cameras and --beside");
     if (s->config.conceal && !strcmp(s->input, "-"))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--conceal needs a file: what comes in order cannot be looked at again");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--conceal needs a file: standard input cannot be read twice");
     if (s->config.conceal) {
         s->config.log = tell_fault;
         s->config.log_user = s;
     }
-    s->config.on_demand = s->times || s->play; /* what a whole clip is made of is read, and checked, as a whole */
+    s->config.on_demand = s->times || s->play; /* a whole clip is read, and checked, as a whole */
     ADCGS_TRY(check_play(s, error));
     if (s->half && s->use_float)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--half and --float exclude each other");
@@ -188,11 +189,11 @@ adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
                           "no output: give -o TARGET, --md5, --verify, --frametimes, --splats, --cameras, --answer or --play");
     const int renders = s->output || s->md5 || s->verify || s->frametimes;
     if (s->cameras && (renders || (!s->request.camera && (frames || s->times))))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--cameras writes cameras, and renders nothing: it goes with --camera, and "
-                                                  "with --time and --size where that is given");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--cameras renders nothing: it goes with --camera only, and with --time and "
+                                                  "--size if --camera is given");
     s->request.order = (adcgs_rotation_order)s->order;
     if (s->output && !strcmp(s->output, "-") && (s->md5 || s->frametimes))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--md5 and --frametimes need standard output, which --output takes");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--md5 and --frametimes need standard output, which --output uses");
     if (s->verify && (strlen(s->verify) != 32 || strspn(s->verify, "0123456789abcdefABCDEF") != 32))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--verify %s: expected 32 hexadecimal digits", s->verify);
     return ADCGS_OK;

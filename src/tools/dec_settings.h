@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What adcgs-dec is told. */
+/** \file Settings of adcgs-dec. */
 #ifndef ADCGS_TOOLS_DEC_SETTINGS_H
 #define ADCGS_TOOLS_DEC_SETTINGS_H
 
@@ -19,16 +19,16 @@ typedef struct adcgs_dec_settings {
     adcgs_camera_path_request request;
     adcgs_config config;
     int quiet, order, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
-    double part;   /**< of the stream: the moment to show; negative: none was given so */
-    double opened; /**< when opening the input began, in seconds */
-    adcgs_http *http, *http_beside; /**< what is read where URLs are given */
+    double part;   /**< part of the stream at which the frame lies (--time N%); negative: not given */
+    double opened; /**< time before opening the input, in seconds */
+    adcgs_http *http, *http_beside; /**< connections of inputs that are URLs */
 } adcgs_dec_settings;
 
-/** The table of options, whose targets are in the settings. */
+/** Fills the table of options, whose targets are in the settings. */
 void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPTIONS]);
-/** What the table cannot check, and what follows from what was said. */
+/** Checks the rules that the table cannot express, and sets the derived settings. */
 adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error);
-/** Whether it was said how a video is coded. */
+/** True if the coding of a video was specified. */
 int adcgs_dec_has_style(const adcgs_dec_settings *s);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-dec --splats: the splats of moments as files. */
+/** \file adcgs-dec --splats: writes the splats of one or several times as files. */
 #include "config.h"
 
 #include "tools/dec_splats.h"
@@ -22,11 +22,11 @@ static adcgs_status check_target(const char *target, const adcgs_splats_style *s
     if (places < 0 || places > 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: expected one number like %%04d in the name", target);
     if (!places && has_many)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a span of times needs a number like %%04d in the name", target);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a range of times needs a number like %%04d in the name", target);
     return ADCGS_OK;
 }
 
-/** The code of what adcgs_info says in words. */
+/** The code for the axes of adcgs_info, which are words. */
 static uint8_t axes_of(const adcgs_info *info)
 {
     static const struct {
@@ -56,19 +56,19 @@ static adcgs_status write_moment(uint32_t *n, adcgs_decoder *decoder, const adcg
     return status;
 }
 
-/** If binary32 cannot hold positions in the world, report the offset, and its place in the file. */
+/** Reports the offset, and its place in the file, if binary32 cannot hold positions in the world. */
 static void tell_offset(const adcgs_cli *cli, const adcgs_info *info, const char *target)
 {
     static const struct {
         const char *extension, *place;
-    } formats[] = {{"glb", "its node is moved by them"}, {"ply", "a comment of its header names them"}};
-    const char *place = "add them: the format has no place for them";
+    } formats[] = {{"glb", "the file's node adds it again"}, {"ply", "a comment of its header contains it"}};
+    const char *place = "add it again: the format cannot store it";
     double offset[3];
     if (!adcgs_offset_of(offset, info->scene_origin, info->scene_scale))
         return;
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
         place = strcasecmp(adcgs_extension(target), formats[i].extension) ? place : formats[i].place;
-    adcgs_cli_note(cli, "%s: the scene is too far from the origin for binary32: positions are less %.17g %.17g %.17g%s; %s",
+    adcgs_cli_note(cli, "%s: the scene is too far from the origin for binary32: the offset %.17g %.17g %.17g is subtracted%s; %s",
                    target, offset[0], offset[1], offset[2], place == formats[1].place ? "" : " (before y is turned up)", place);
 }
 
@@ -103,10 +103,11 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
     }
     ADCGS_TRY(check_target(how->target, &style, moments.end > moments.begin, error));
     if (info.truncated)
-        adcgs_cli_note(cli, "%s: the stream ends early; writing what is complete", input);
+        adcgs_cli_note(cli, "%s: the stream ends early; writing its complete part", input);
     ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &moments, error));
     if (frames.outside)
-        adcgs_cli_note(cli, "%s: %d of %d file%s %s its first or last moment: it lasts from %g to %g s", input, frames.outside,
+        adcgs_cli_note(cli, "%s: %d of %d file%s %s its first or last frame: the stream lasts from %g to %g "
+                            "s", input, frames.outside,
                        frames.n, adcgs_s((uint64_t)frames.n), frames.outside == 1 ? "shows" : "show",
                        info.time_start, info.time_end);
     const adcgs_status status = write_all(&n, decoder, &info, how, &frames, error);

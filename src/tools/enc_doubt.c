@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Cameras that are not where they are said to be show in the training views: the others outvote them. */
+/** \file Wrong camera poses show in the training views, since the other cameras outvote them. */
 #include "tools/enc_doubt.h"
 
 #include "data/sort.h"
@@ -8,21 +8,21 @@
 
 #include <math.h>
 
-#define VIEWS 96         /* that are measured at most */
-#define CAMERAS_FEW 3    /* which stay: what is between them is a guess */
-#define CAMERAS_MANY 5   /* enough for one to be odd */
+#define VIEWS 96         /* most views that are measured */
+#define CAMERAS_FEW 3    /* static cameras: views between them are unreliable */
+#define CAMERAS_MANY 5   /* enough cameras for one to be an outlier */
 #define DB_ODD 6.0       /* below the median camera, and SPREADS times as far below the quartile as that is below the median */
-#define SPREADS 3.0      /* cameras of a rig that see more or less of what is hard may differ as much, but not one alone */
-#define DB_UNSEEN 8.0    /* that views that training never saw are worse by, where each camera is given its pictures alone */
+#define SPREADS 3.0      /* cameras of a rig with harder or easier views may differ as much, but not a single one */
+#define DB_UNSEEN 8.0    /* deficit of views that training never saw, if each camera fits only its own images */
 #define NAMED 3
 
 typedef struct tally {
     double sum;
     uint32_t n;
-    const char *name; /* of its first view that is measured */
+    const char *name; /* name of its first measured view */
 } tally;
 
-/** Of each camera, and the interrupts that came before. */
+/** The tallies of all cameras, and the number of earlier interrupts. */
 typedef struct tallies {
     tally of[VIEWS];
     int heard;
@@ -50,7 +50,7 @@ static void say_odd(const adcgs_cli *cli, const tally *list, int cameras, const 
     const double odd = fmin(median - DB_ODD, quartile - SPREADS * (median - quartile));
     for (int i = 0; i < cameras && cameras >= CAMERAS_MANY && named < NAMED; i++)
         if (mean[i] < odd && ++named)
-            adcgs_cli_note(cli, "%s: the camera of view %s has %.1f dB, the median camera %.1f: is its pose right?", file,
+            adcgs_cli_note(cli, "%s: the camera of view %s has %.1f dB, the median camera %.1f: check its pose", file,
                            list[i].name, mean[i], median);
 }
 
@@ -65,7 +65,7 @@ void adcgs_enc_doubt(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_s
     adcgs_error error;
     if (*cli->quiet || !n)
         return;
-    /* One of each stretch of views, anywhere in it: cameras may come in turns. */
+    /* Picks one view of each stretch of views, at a random place: cameras may take turns. */
     for (uint32_t i = 0; i < n; i++) {
         const uint64_t from = (uint64_t)all * i / n, until = (uint64_t)all * (i + 1) / n;
         picked[i] = scene->views[ADCGS_SPLIT_TRAIN][from + adcgs_random64(0, 0, i) % (until - from)];
@@ -78,10 +78,10 @@ void adcgs_enc_doubt(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_s
     while (cameras < (int)n && found.of[cameras].n)
         cameras++;
     if (cameras <= CAMERAS_FEW && cameras < (int)n)
-        adcgs_cli_note(cli, "%s: filmed by %d camera%s: what is seen from elsewhere is a guess", file, cameras,
+        adcgs_cli_note(cli, "%s: filmed by %d camera%s: other viewpoints are unreliable", file, cameras,
                        cameras > 1 ? "s" : "");
     if (unseen < mean.psnr - DB_UNSEEN)
-        adcgs_cli_note(cli, "%s: training views have %.1f dB, others %.1f: are poses, axes and times right, and views enough?",
+        adcgs_cli_note(cli, "%s: training views have %.1f dB, others %.1f: check poses, axes and times, and the number of views",
                        file, mean.psnr, unseen);
     say_odd(cli, found.of, cameras, file);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a run says about a scene's cameras: those that cannot be right leave a stream that is sound and shows little. */
+/** \file Warnings on a scene's cameras after a run: with wrong cameras the stream is valid, but of low quality. */
 #ifndef ADCGS_TOOLS_ENC_DOUBT_H
 #define ADCGS_TOOLS_ENC_DOUBT_H
 
@@ -9,10 +9,10 @@
 #include <adcgs/types.h>
 
 /**
- * Measure some of the training views that the stream was made of, with gain and black level fitted, and note, unless --quiet,
- * cameras that are drawn far worse than the others, views that training never saw that are (unseen: their PSNR; not a number if
- * there are none), and cameras that are too few. A view that cannot be measured is no reason to say more, and so
- * is an interrupt beyond those heard before.
+ * Measures some of the training views of the stream, with gain and black level fitted, and prints warnings unless --quiet.
+ * Warnings cover cameras that render far worse than the others, much worse views that training never saw (unseen: their PSNR; NaN
+ * if there are none), and too few cameras. A view that cannot be measured ends the check without a message, and so does an
+ * interrupt beyond the earlier ones.
  */
 void adcgs_enc_doubt(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_scene *scene, double unseen, const char *file,
                      int heard);

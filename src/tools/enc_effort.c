@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How long a live segment is learnt. */
+/** \file Training effort of a live segment. */
 #include "config.h"
 
 #include "tools/enc_effort.h"
 
 #include <math.h>
 
-#define LEAST 200   /* iterations */
-#define SAFETY 0.85 /* of the time that is left */
-#define GUARD 0.95  /* of it, that the clock ends at */
-#define BLIND 2.0   /* seconds that must be left for a segment to be learnt by the clock, before any speed is known */
-#define NEWS 0.4    /* that effort changes by before it is said again */
-#define MOMENTS 8   /* that are matched of a segment with a delay, and no bodies: matching takes as long as much of a run */
+#define LEAST 200   /* minimum iterations */
+#define SAFETY 0.85 /* share of the remaining time that is planned */
+#define GUARD 0.95  /* share of the remaining time at which the time limit lies */
+#define BLIND 2.0   /* seconds that must remain for a segment to be trained by the clock before any speed is known */
+#define NEWS 0.4    /* relative change of effort that is reported again */
+#define MOMENTS 8   /* frames of a segment with a delay that are matched, without rigid bodies: matching takes as long as much
+                       of a run */
 
 void adcgs_enc_effort_init(adcgs_enc_effort *e, adcgs_enc_job *job)
 {

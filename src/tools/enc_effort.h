@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * How long a live segment is learnt. Without a delay that is to be held, as long as any run. With one, as many iterations as the
- * last segments' speed allows until the segment is due, and the clock as a guard; a few at least, even if they come too late.
+ * Training effort of a live segment. Without a required delay, it is that of any run. With one, it is as many iterations as the
+ * speed of the last segments allows until the segment is due, with a time limit as a guard. A minimum of iterations is kept, even
+ * if they come too late.
  */
 #ifndef ADCGS_TOOLS_ENC_EFFORT_H
 #define ADCGS_TOOLS_ENC_EFFORT_H
@@ -9,22 +10,21 @@
 #include "tools/enc_run.h"
 
 typedef struct adcgs_enc_effort {
-    double delay;     /**< seconds from when something is filmed to when it is written, at most; 0: no matter */
-    uint32_t most;    /**< iterations of a segment */
-    double rate;      /**< iterations per second lately; 0: not known */
-    double overhead;  /**< seconds of a segment that are no iterations */
-    uint32_t said;    /**< iterations that were told last; 0: none */
+    double delay;     /**< maximum seconds from filming to writing; 0: no limit */
+    uint32_t most;    /**< maximum iterations of a segment */
+    double rate;      /**< recent iterations per second; 0: unknown */
+    double overhead;  /**< seconds of a segment outside of iterations */
+    uint32_t said;    /**< iterations reported last; 0: none */
 } adcgs_enc_effort;
 
-/** Where there is a delay, matching takes less of it: settings of the job's configuration change. */
+/** With a delay, changes settings of the job's configuration so that matching takes less time. */
 void adcgs_enc_effort_init(adcgs_enc_effort *effort, adcgs_enc_job *job);
 /**
- * Set iterations and time limit, which counts from when training begins, of the job's configuration for segment `number`, which
- * takes so many seconds and came then.
- * Says so where effort is another than it was.
+ * Sets iterations and time limit in the job's configuration for segment `number`, of `seconds` seconds, which arrived at `came`.
+ * The time limit counts from the beginning of training. Reports a change of effort.
  */
 void adcgs_enc_effort_choose(adcgs_enc_effort *effort, adcgs_enc_job *job, double came, double seconds, uint32_t number);
-/** What a segment has shown: the reports after its first iteration and after its last, and how long it took in all. */
+/** Updates the speed from a segment: the reports after its first and its last iteration, and its total time. */
 void adcgs_enc_effort_learn(adcgs_enc_effort *effort, const adcgs_train_report *first, const adcgs_train_report *last,
                             double seconds);
 

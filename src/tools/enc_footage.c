@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Faults of footage in words. */
+/** \file Messages on faults of footage. */
 #include "tools/enc_footage.h"
 
 #include "data/faults.h"
@@ -8,7 +8,7 @@
 
 enum { GAPS = 1, DOUBLED = 2, LIGHT = 4, CLOCKS = 8, COPIED = 16, POSES = 32, TIMES = 64, AXES = 128 };
 
-/** A file as seen from the scene. */
+/** A path relative to the scene's folder, if it lies there. */
 static const char *short_name(const adcgs_scene *scene, const char *path)
 {
     const size_t length = strlen(scene->directory);
@@ -18,7 +18,7 @@ static const char *short_name(const adcgs_scene *scene, const char *path)
     return strncmp(path, "./", 2) ? path : path + 2;
 }
 
-/** ", and N other cameras", or nothing; what: the words before the number. */
+/** Writes the given words followed by "another camera" or "N other cameras", or nothing for a single camera. */
 static const char *others(char text[64], const char *what, const adcgs_fault *f)
 {
     *text = '\0';
@@ -33,19 +33,20 @@ static void say_gaps(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs
 {
     char more[64];
     if (!f->path)
-        adcgs_cli_note(cli, "%s: no camera has a picture between %.3f and %.3f s: what moves there is a guess", scene->directory,
+        adcgs_cli_note(cli, "%s: no camera has an image between %.3f and %.3f s: motion there is unknown; check for missing "
+                            "files", scene->directory,
                        f->from, f->to);
     else
-        adcgs_cli_note(cli, "%s: its camera has no picture between %.3f and %.3f s, where %.0f would be expected%s",
-                       short_name(scene, f->path), f->from, f->to, f->size, others(more, "; there are gaps of", f));
+        adcgs_cli_note(cli, "%s: its camera has no image between %.3f and %.3f s, where %.0f would be expected%s",
+                       short_name(scene, f->path), f->from, f->to, f->size, others(more, "; gaps also in", f));
 }
 
-/** ", as are N others", or nothing. */
+/** Writes ", as do N others", or nothing. */
 static const char *so_are(char text[64], double n)
 {
-    snprintf(text, 64, n > 0 ? ", as is another" : "");
+    snprintf(text, 64, n > 0 ? ", as does another" : "");
     if (n > 1)
-        snprintf(text, 64, ", as are %.0f others", n);
+        snprintf(text, 64, ", as do %.0f others", n);
     return text;
 }
 
@@ -54,28 +55,28 @@ static void say_doubled(const adcgs_cli *cli, const adcgs_scene *scene, const ad
     char more[64], of_this[64] = "";
     if (f->size > 1)
         snprintf(of_this, sizeof of_this, ", %u of this camera", f->count - 1);
-    adcgs_cli_note(cli, "%s: the picture at %.3f s is the one before it once more%s%s: doubled frames? (--set retime_doubled)",
+    adcgs_cli_note(cli, "%s: the image at %.3f s repeats the previous one%s%s: check for doubled frames (--set retime_doubled)",
                    short_name(scene, f->path), begins + f->from, so_are(more, f->size - 1), of_this);
 }
 
 static void say_copied(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
 {
     char more[64];
-    adcgs_cli_note(cli, "%s: the picture at %.3f s is that of another camera before it once more%s: are files mixed up?",
+    adcgs_cli_note(cli, "%s: the image at %.3f s repeats the previous image of another camera%s: check for mixed-up files",
                    short_name(scene, f->path), begins + f->from, so_are(more, f->size - 1));
 }
 
-/** is_evened: it was taken out of the pictures. */
+/** is_evened: the step was removed from the images. */
 static void say_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins, int is_evened)
 {
-    static const char *const what[ADCGS_LIGHTS][2] = { { "bright", "exposure" }, { "red beside green", "white balance" },
-                                                       { "blue beside green", "white balance" } };
+    static const char *const what[ADCGS_LIGHTS][2] = { { "bright", "exposure" }, { "red relative to green", "white balance" },
+                                                       { "blue relative to green", "white balance" } };
     char more[64], question[80];
-    snprintf(question, sizeof question, "does %s, or the light, change? (--set even_light)", what[f->light][1]);
-    adcgs_cli_note(cli, "%s: at %.3f s the pictures of %s become %.2f times as %s%s: %s", short_name(scene, f->path),
+    snprintf(question, sizeof question, "check %s and light (--set even_light)", what[f->light][1]);
+    adcgs_cli_note(cli, "%s: at %.3f s the images of %s become %.2f times as %s%s: %s", short_name(scene, f->path),
                    begins + f->to, f->cameras == f->of && f->of > 1 ? "all cameras" : "its camera", f->size, what[f->light][0],
                    f->cameras == f->of ? "" : others(more, ", and those of", f),
-                   is_evened ? "this is taken out of them, as all steps of light" : question);
+                   is_evened ? "this and all other steps of light are evened out" : question);
 }
 
 void adcgs_enc_tell_evened(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *light)
@@ -83,53 +84,55 @@ void adcgs_enc_tell_evened(const adcgs_cli *cli, const adcgs_scene *scene, const
     if (light->cameras)
         say_light(cli, scene, light, 0, 1);
     else
-        adcgs_cli_note(cli, "%s: even_light: no camera's light steps", scene->directory);
+        adcgs_cli_note(cli, "%s: even_light: no steps of light found", scene->directory);
 }
 
 static void say_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)
 {
     char more[64];
-    adcgs_cli_note(cli, "%s: what happens seems %u frame%s %s in its camera than in others%s: are clocks in step?",
+    adcgs_cli_note(cli, "%s: its camera appears %u frame%s %s than others%s: check synchronisation",
                    short_name(scene, f->path), f->count, f->count > 1 ? "s" : "", f->size > 0 ? "later" : "earlier",
-                   others(more, "; so it does in", f));
+                   others(more, "; also", f));
 }
 
 static void say_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_off *poses)
 {
-    adcgs_cli_note(cli, "%s: what a camera shows lies %.1f pixels beside where others should have it: are poses, or lenses, off?",
+    adcgs_cli_note(cli, "%s: matched points of cameras lie %.1f pixels apart (median): check poses and lenses",
                    scene->directory, poses->median * poses->pixels);
 }
 
-/** How poses seem to be meant, if not as they are given. */
+/** Reports the convention that fits the poses, if it is not the given one. */
 static void say_axes(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_axes_doubt *d)
 {
-    static const char *const changes[ADCGS_READINGS] = {"", "y and z of all cameras are turned round", "all poses are inverted",
+    static const char *const changes[ADCGS_READINGS] = {"", "y and z of all cameras are flipped", "all poses are inverted",
                                                         "all poses are inverted"};
     static const char *const questions[ADCGS_READINGS] = {
-        "", "are their axes OpenGL's where OpenCV's are expected, or these where those are",
-        "do their matrices take the world to the camera where the way back is expected",
-        "do their matrices take the world to the camera where the way back is expected"};
+        "", "axes are OpenGL's instead of OpenCV's, or the reverse",
+        "matrices map world to camera instead of camera to world",
+        "matrices map world to camera instead of camera to world"};
     const char *const change = changes[d->meant], *const question = questions[d->meant], *const where = scene->directory;
     if (d->by == ADCGS_BY_POINTS)
-        adcgs_cli_note(cli, "%s: a camera sees %.0f %% of the points, and %.0f %% if %s: %s?", where, 100.0 * d->here,
+        adcgs_cli_note(cli, "%s: a camera sees %.0f %% of the points, and %.0f %% if %s: check whether "
+                            "%s", where, 100.0 * d->here,
                        100.0 * d->there, change, question);
     else if (d->by == ADCGS_BY_PICTURES)
-        adcgs_cli_note(cli, "%s: what cameras show does not go together, but does if %s: %s?", where, change, question);
+        adcgs_cli_note(cli, "%s: the cameras' images contradict each other, but not if %s: check whether "
+                            "%s", where, change, question);
     else
-        adcgs_cli_note(cli, "%s: all cameras %s; if they were around what they film: %s?", where,
+        adcgs_cli_note(cli, "%s: all cameras %s; if they should surround the scene, check whether %s", where,
                        d->meant == ADCGS_READ_TURNED ? "look away from each other" : "are in one place", question);
 }
 
-/** One camera's pose alone. */
+/** Reports the pose of a single camera. */
 static void say_odd(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_odd *o, double pixels)
 {
     const char *const path = short_name(scene, scene->views[ADCGS_SPLIT_TRAIN][o->view].path);
-    adcgs_cli_note(cli, "%s: its camera disagrees with the others: it shows things %.1f pixels beside where they have them, as "
-                   "if turned by %.1f degrees and moved by %.0f %% of the way to these: is its pose, or its lens, off?", path,
+    adcgs_cli_note(cli, "%s: its camera disagrees with the others by %.1f pixels (rotation %.1f degrees, translation %.0f %% of "
+                        "the distance to them): check its pose or lens", path,
                    o->off * pixels, o->turned, 100.0 * o->moved);
 }
 
-/** What is wrong with poses. */
+/** Reports wrong poses. */
 static void look_at_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_scene *whole, const adcgs_stereo *found,
                           adcgs_pool *pool, unsigned *told)
 {
@@ -140,7 +143,7 @@ static void look_at_poses(const adcgs_cli *cli, const adcgs_scene *scene, const 
         say_axes(cli, whole, &doubt);
         *told |= POSES;
     }
-    *told |= AXES; /* by the first part of a scene */
+    *told |= AXES; /* checked for the first part of a scene */
     if (!(*told & POSES) && found->poses.pairs >= ADCGS_STEREO_PAIRS && !adcgs_stereo_poses_fit(&found->poses)) {
         say_poses(cli, whole, &found->poses);
         *told |= POSES;
@@ -149,7 +152,7 @@ static void look_at_poses(const adcgs_cli *cli, const adcgs_scene *scene, const 
         say_odd(cli, scene, &found->odd[i], found->poses.pixels);
 }
 
-/** What pictures show, each kind until it was told. */
+/** Reports faults of the images, each kind once. */
 static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_scene *whole, const adcgs_tracks *tracks,
                              const adcgs_glance *glances, double begins, unsigned *told)
 {
@@ -176,11 +179,11 @@ void adcgs_enc_tell_remarks(const adcgs_cli *cli, const adcgs_scene *scene)
         adcgs_cli_note(cli, "%s", scene->remarks[i]);
 }
 
-/** Pictures that have no times and look as if they should. */
+/** Reports images that have no times, but seem to be frames. */
 static void say_times(const adcgs_cli *cli, const adcgs_scene *scene)
 {
-    adcgs_cli_note(cli, "%s: names of the pictures only count: if they are frames of a video, this is not what was filmed, but a "
-                   "scene in which nothing moves; adcgs-import makes one with times", scene->directory);
+    adcgs_cli_note(cli, "%s: the images' names are plain numbers, so the scene is static: if they are frames of a video, "
+                        "adcgs-import makes a scene with times", scene->directory);
 }
 
 void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo *found,
@@ -195,7 +198,7 @@ void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, con
         say_gaps(cli, whole, &gaps);
     if (!(*told & TIMES) && whole->counts)
         say_times(cli, whole);
-    *told |= GAPS | TIMES; /* of the whole scene, once */
+    *told |= GAPS | TIMES; /* checks of the whole scene, once */
     look_at_poses(cli, scene, whole, found, pool, told);
     if (!(*told & DOUBLED) && doubled->cameras) {
         say_doubled(cli, whole, doubled, begins);

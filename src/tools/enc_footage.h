@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a run says about a scene's footage before it learns: pictures that are doubled or missing, light, clocks, poses. */
+/** \file Warnings on a scene's footage before training: doubled or missing images, light, clocks, poses. */
 #ifndef ADCGS_TOOLS_ENC_FOOTAGE_H
 #define ADCGS_TOOLS_ENC_FOOTAGE_H
 
@@ -10,18 +10,17 @@
 #include "stereo/axes.h"
 
 /**
- * Note, unless --quiet, faults of footage that are found (data/faults.h), one line for each kind. scene: what is learnt at a
- * time, which begins at `begins` seconds of the whole; found: by its matched pictures; doubled: those of its pictures that come
- * twice; glances are of its training views. *told: kinds told of before, for one part of a scene after the other; 0 to begin
- * with. Where there is no memory for it nothing is said.
+ * Prints faults of footage (data/faults.h) unless --quiet, one line for each kind. scene: the part that is trained, which begins
+ * at `begins` seconds of the whole; found: its matched images; doubled: its repeated images; glances: those of its training
+ * views. *told: kinds already reported for earlier parts of the scene, initially 0. Prints nothing on allocation failure.
  */
 void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo *found,
                              const adcgs_fault *doubled, adcgs_pool *pool, const adcgs_glance *glances, double begins,
                              unsigned *told);
 
-/** Print the scene's remarks, unless --quiet. */
+/** Prints the scene's remarks, unless --quiet. */
 void adcgs_enc_tell_remarks(const adcgs_cli *cli, const adcgs_scene *scene);
-/** Note that such a step of light was evened out, or that there is none. */
+/** Reports that this step of light was evened out, or that there is none. */
 void adcgs_enc_tell_evened(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *light);
 
 #endif

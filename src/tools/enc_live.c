@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/**
- * \file adcgs-enc --live. Memory holds the pictures of the segment that is learnt, its model and the one before; what comes
- * meanwhile stays where it is (layouts/live.h).
+/** \file
+ * adcgs-enc --live. Memory holds the images of the segment in training, its model and the previous model. Later images stay at
+ * their source (layouts/live.h).
  */
 #include "config.h"
 
@@ -23,19 +23,19 @@
 #include <signal.h>
 #include <stdlib.h>
 
-#define ANCHORS_MARGIN 2 /* times the budget, that HEAD has room for */
+#define ANCHORS_MARGIN 2 /* HEAD allows this multiple of the budget */
 
 typedef struct live_run {
     adcgs_enc_watcher *w;
     adcgs_enc_job *job;
-    adcgs_train_config asked; /* as it was before it was fitted to what comes */
+    adcgs_train_config asked; /* the configuration before it is fitted to the input */
     adcgs_live *live;
     adcgs_live_segment segment;
     adcgs_encode_live stream;
     adcgs_enc_live_file file;
-    adcgs_claim *claim; /* of the file; NULL: of a pipe */
-    adcgs_enc_live_past past; /* what goes on */
-    adcgs_buffer bytes;   /* of the segment at hand */
+    adcgs_claim *claim; /* on the file; NULL: a pipe */
+    adcgs_enc_live_past past; /* the stream to continue */
+    adcgs_buffer bytes;   /* of the current segment */
     int is_open;          /* the stream has a segment */
     double key;           /* seconds at which the last key began */
     adcgs_enc_effort effort;
@@ -55,7 +55,7 @@ static adcgs_status append(live_run *r, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** The end of the stream, and of its file. */
+/** Ends the stream and its file. */
 static adcgs_status end_stream(live_run *r, adcgs_error *error)
 {
     adcgs_buffer head;
@@ -71,7 +71,7 @@ static adcgs_status end_stream(live_run *r, adcgs_error *error)
     return status;
 }
 
-/** A stream, to which the segment that was just learnt can be added. */
+/** Opens a stream, to which the last trained segment can be added. */
 static adcgs_status begin_stream(live_run *r, adcgs_error *error)
 {
     const adcgs_enc_job *job = r->job;
@@ -91,7 +91,7 @@ static adcgs_status begin_stream(live_run *r, adcgs_error *error)
     return status;
 }
 
-/** A stream that has all that its level allows ends, and another begins with this segment. */
+/** Ends a stream that has reached its level's limits, and begins another with this segment. */
 static adcgs_status begin_another(live_run *r, adcgs_model *model, adcgs_error *error)
 {
     ADCGS_TRY(end_stream(r, error));
@@ -102,7 +102,7 @@ static adcgs_status begin_another(live_run *r, adcgs_model *model, adcgs_error *
     return adcgs_encode_live_add(&r->stream, model, &r->bytes, error);
 }
 
-/** follows: it was learnt from the one before. */
+/** follows: the segment was trained from the previous one. */
 static adcgs_status add_segment(live_run *r, int follows, adcgs_model *model, adcgs_error *error)
 {
     const adcgs_live_segment *s = &r->segment;
@@ -127,9 +127,11 @@ static adcgs_status write_segment(live_run *r, int follows, adcgs_error *error)
     return status == ADCGS_OK ? append(r, error) : status;
 }
 
-/* ---- Learning ---- */
+/* ---- Training ---- */
 
-/** Whether it is learnt from the one before: a key is not due yet, or there are too few moments for the time table of a key. */
+/**
+ * True if the segment is trained from the previous one: no key is due yet, or it has too few timestamps for a key's time table.
+ */
 static int is_to_follow(const live_run *r)
 {
     const adcgs_live_segment *s = &r->segment;
@@ -143,7 +145,7 @@ static adcgs_status learn_segment(live_run *r, adcgs_error *error)
     const int follows = is_to_follow(r);
     const adcgs_model *before = r->is_open ? &r->stream.model : NULL;
     const double started = adcgs_seconds();
-    if (r->is_open) /* keys have the parameters of the first */
+    if (r->is_open) /* keys have the parameters of the first segment */
         r->job->config.params.time_rows = r->stream.front.params.time_rows;
     w->segment = r->past.n + r->sum.n;
     w->next_log = 0;
@@ -161,13 +163,13 @@ static void tell_missing(live_run *r)
 {
     double time;
     for (const char *name; (name = adcgs_live_missing(r->live, &time));)
-        adcgs_cli_error(r->job->cli, ADCGS_OK, "%s: no picture of %g s; this moment, and others like it, are learnt without "
-                        "(said once)", name, time);
+        adcgs_cli_error(r->job->cli, ADCGS_OK, "%s: no image at %g s; this time, and similar ones, are trained without it "
+                                               "(reported once)", name, time);
 }
 
-/* ---- Going on ---- */
+/* ---- Continuing a stream ---- */
 
-/** What a run before has left. Nothing of it changes before there is a segment more. */
+/** Takes the stream of an earlier run. The file does not change before another segment follows. */
 static adcgs_status take_past(live_run *r, adcgs_live_options *options, adcgs_error *error)
 {
     const adcgs_model *const last = &r->past.last;
@@ -180,7 +182,7 @@ static adcgs_status take_past(live_run *r, adcgs_live_options *options, adcgs_er
     return ADCGS_OK;
 }
 
-/** It is known now what comes behind it. */
+/** Completes the earlier stream, now that the next segment is known. */
 static adcgs_status go_on(live_run *r, adcgs_error *error)
 {
     const double begin = r->segment.scene ? r->segment.begin : INFINITY, end = r->past.last.time_end;
@@ -192,15 +194,15 @@ static adcgs_status go_on(live_run *r, adcgs_error *error)
     r->sum.past = r->past.n;
     r->is_open = r->stream.model.n > 0;
     r->sum.streams = (uint32_t)r->is_open;
-    if (!r->is_open) /* its only segment is learnt anew */
+    if (!r->is_open) /* its only segment is trained again */
         adcgs_encode_live_clear(&r->stream);
     else if (r->segment.scene && begin > r->stream.model.time_end + 1e-3)
-        adcgs_cli_note(r->job->cli, "nothing is learnt of what lies between %g and %g s: segments were cut otherwise before", end,
+        adcgs_cli_note(r->job->cli, "nothing is trained between %g and %g s: the earlier run had other segment boundaries", end,
                        begin);
     return ADCGS_OK;
 }
 
-/** How large pictures are is known, and with that all settings. */
+/** Fixes all settings, now that the size of the images is known. */
 static adcgs_status settle(live_run *r, adcgs_error *error)
 {
     adcgs_enc_reduce_large(r->job, r->segment.scene, &r->w->progress);
@@ -225,13 +227,13 @@ static adcgs_status learn_all(live_run *r, adcgs_error *error)
     }
 }
 
-/** Whether a stream whose run has failed can be ended: all that it consists of is written. */
+/** True if the stream of a failed run can be ended: all its segments are written. */
 static int can_end(const live_run *r, adcgs_status status)
 {
     return r->is_open && r->stream.model.n && !r->bytes.size && !r->file.growing.is_hidden && status != ADCGS_ERR_INTERNAL;
 }
 
-/** Two that write one file would each take it from the other. */
+/** Claims the file: two writers would overwrite each other. */
 static adcgs_status claim_file(live_run *r, adcgs_error *error)
 {
     char *name;
@@ -249,7 +251,7 @@ static adcgs_status run(live_run *r, adcgs_error *error)
     adcgs_live_options options = { .seconds = o->segment, .unbounded = o->has_delay, .points_path = o->points,
                                    .interrupted = adcgs_interrupted };
     adcgs_interrupt_catch(1);
-    signal(SIGPIPE, SIG_IGN); /* a reader that leaves is an error of writing */
+    signal(SIGPIPE, SIG_IGN); /* a reader that leaves is a write error */
     ADCGS_TRY(adcgs_enc_live_file_open(&r->file, o->output, o->resume, error));
     ADCGS_TRY(claim_file(r, error));
     if (o->resume)
@@ -270,17 +272,17 @@ adcgs_status adcgs_enc_live(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_erro
 {
     live_run r = { .w = w, .job = job };
     if (job->config.even_light)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--live: even_light looks at all pictures before any is learnt");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--live: even_light needs all images before training: leave it out");
     w->is_live = 1;
     r.asked = job->config;
-    job->config.own_anchors = 1; /* HEAD says how many there may be before most pictures are taken */
+    job->config.own_anchors = 1; /* HEAD states the maximum of anchors before most images arrive */
     adcgs_buffer_init(&r.bytes);
     adcgs_enc_effort_init(&r.effort, job);
     const adcgs_status status = run(&r, error);
     adcgs_live_segment_clear(&r.segment);
     adcgs_encode_live_clear(&r.stream);
     adcgs_enc_live_past_clear(&r.past);
-    adcgs_trainer_free(&w->t); /* before the scene that it was given */
+    adcgs_trainer_free(&w->t); /* before the scene that it uses */
     adcgs_live_close(&r.live);
     adcgs_enc_live_file_close(&r.file);
     adcgs_claim_drop(&r.claim);

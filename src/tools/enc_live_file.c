@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where a live stream goes. */
+/** \file Output of a live stream. */
 #include "config.h"
 
 #include "tools/enc_live_file.h"
@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define NUMBER_MAX 9999 /* of streams that follow each other */
+#define NUMBER_MAX 9999 /* most consecutive streams */
 
-/** The name of a stream's file, from malloc(): the number goes before the extension. */
+/** Returns the name of a stream's file, from malloc(): the number goes before the extension. */
 static char *number_name(const char *name, uint32_t number)
 {
     const size_t n = strlen(name) + 16;
@@ -35,7 +35,7 @@ static adcgs_status open_number(adcgs_enc_live_file *f, uint32_t number, adcgs_e
     return f->path ? adcgs_growing_open(&f->growing, f->path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
 }
 
-/** Which of the streams of this name has that name; 0: none. */
+/** Returns the number of the stream with this name; 0: none. */
 static uint32_t find_number(const char *name, const char *past)
 {
     for (uint32_t number = 1; number <= NUMBER_MAX; number++) {
@@ -48,7 +48,7 @@ static uint32_t find_number(const char *name, const char *past)
     return 0;
 }
 
-/** Whether there is one behind it. */
+/** True if another stream follows. */
 static int follows(const char *name, uint32_t number)
 {
     char *const path = number_name(name, number + 1);
@@ -64,10 +64,10 @@ adcgs_status adcgs_enc_live_file_open(adcgs_enc_live_file *f, const char *name, 
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: expected a file, which can be read back", past);
     const uint32_t number = past ? find_number(name, past) : 1;
     if (!number)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: expected the file that --output names, or one that followed it "
-                          "(name.2.adcgs)", past);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: expected the file of --output, or a later one "
+                                                  "(name.2.adcgs)", past);
     if (past && follows(name, number))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: another stream followed it, number %u: go on with the last one",
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: another stream followed, number %u: continue the last one",
                           past, number + 1);
     ADCGS_TRY(open_number(f, number, error));
     f->growing.is_hidden = past != NULL;
@@ -79,7 +79,7 @@ adcgs_status adcgs_enc_live_file_append(adcgs_enc_live_file *f, const void *data
     return adcgs_growing_append(&f->growing, data, bytes, error);
 }
 
-/** The same stream with another HEAD, in the place of the one that grew. */
+/** Replaces the grown stream by the same stream with another HEAD. */
 static adcgs_status settle(const char *path, const adcgs_buffer *head, adcgs_error *error)
 {
     adcgs_atomic to;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a run before has left of its stream. */
+/** \file The stream of an earlier live run. */
 #include "config.h"
 
 #include "tools/enc_live_past.h"
@@ -7,7 +7,7 @@
 #include "cli/text.h"
 #include "encode/past.h"
 
-/** Add the last segment, as it was. */
+/** Adds the last segment unchanged. */
 static adcgs_status add_last(adcgs_enc_live_past *p, adcgs_encode_live *stream, adcgs_enc_live_file *file, adcgs_error *error)
 {
     adcgs_buffer bytes;
@@ -43,9 +43,9 @@ static adcgs_status take_segments(adcgs_enc_live_past *p, adcgs_past *from, adcg
 static void tell(const adcgs_enc_live_past *p, const adcgs_past *from, const adcgs_cli *cli)
 {
     const char *const fault = from->fault.status != ADCGS_OK ? from->fault.text : NULL;
-    adcgs_cli_note(cli, "%s: %u segment%s %s whole, to %g s%s%s", from->path, p->n + 1, adcgs_s(p->n + 1), p->n ? "are" : "is",
+    adcgs_cli_note(cli, "%s: %u segment%s %s complete, to %g s%s%s", from->path, p->n + 1, adcgs_s(p->n + 1), p->n ? "are" : "is",
                    p->last.time_end,
-                   fault ? "; behind that: " : "", fault ? fault : "");
+                   fault ? "; after that: " : "", fault ? fault : "");
 }
 
 adcgs_status adcgs_enc_live_past_take(adcgs_enc_live_past *p, adcgs_encode_live *stream, adcgs_enc_live_file *file,
@@ -56,7 +56,7 @@ adcgs_status adcgs_enc_live_past_take(adcgs_enc_live_past *p, adcgs_encode_live 
     if (status == ADCGS_OK)
         status = take_segments(p, &from, stream, file, max_anchors, job, error);
     if (status == ADCGS_OK && !p->last.n)
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: no segment of it is whole: there is nothing to go on from%s%s",
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: no complete segment, so nothing can be continued%s%s",
                             job->o->resume, from.fault.status != ADCGS_OK ? "; " : "", from.fault.text);
     if (status == ADCGS_OK)
         tell(p, &from, job->cli);

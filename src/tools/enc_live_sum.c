@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a live run has come to. */
+/** \file Totals of a live run. */
 #include "config.h"
 
 #include "tools/enc_live_sum.h"
@@ -58,11 +58,11 @@ adcgs_status adcgs_enc_live_sum_print(const adcgs_enc_live_sum *s, const adcgs_e
     adcgs_text_show(stderr, strcmp(o->output, "-") ? o->output : "standard output");
     fprintf(stderr, ": %llu bytes; ", (unsigned long long)s->bytes);
     if (s->past)
-        fprintf(stderr, "%u segment%s as they were, ", s->past, adcgs_s(s->past));
+        fprintf(stderr, "%u earlier segment%s unchanged, ", s->past, adcgs_s(s->past));
     fprintf(stderr, "%u segment%s of %g s together, %u of them keys\n", s->n, adcgs_s(s->n), s->end - s->begin, s->keys);
-    fprintf(stderr, "delay %.2f s in the mean, %.2f s at worst", s->delay / n, s->worst);
+    fprintf(stderr, "delay %.2f s on average, %.2f s at most", s->delay / n, s->worst);
     if (o->has_delay)
-        fprintf(stderr, ", %g s asked for", o->delay);
-    fprintf(stderr, "; %.0f iterations a segment, %u to %u\n", (double)s->iterations / n, s->least, s->most);
+        fprintf(stderr, ", %g s requested", o->delay);
+    fprintf(stderr, "; %.0f iterations per segment, %u to %u\n", (double)s->iterations / n, s->least, s->most);
     return ADCGS_OK;
 }

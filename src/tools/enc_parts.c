@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a run of several segments leaves on the disk while it lasts. */
+/** \file Temporary files of a run of several segments. */
 #include "config.h"
 
 #include "tools/enc_parts.h"
@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #define AWAIT_NAP 100000000L /* nanoseconds */
-#define AWAIT_NAPS 900       /* a minute and a half: NFS looks again after one */
+#define AWAIT_NAPS 900       /* a minute and a half: NFS refreshes its cache after one */
 
 adcgs_status adcgs_enc_part_name(char **name, const char *base, uint32_t part, int is_stream, adcgs_error *error)
 {
@@ -90,13 +90,13 @@ adcgs_status adcgs_enc_part_load(adcgs_stream *stream, const char *name, adcgs_c
     return status == ADCGS_OK ? status : adcgs_fail(error, status, "%s: %.200s", name, why.text);
 }
 
-/** Notes that nobody knows before a run has ended. */
+/** True for notes that are unknown before a run ends. */
 static int follows_from_run(const char *key)
 {
     return !strcmp(key, "lambda") || !strcmp(key, "decisions");
 }
 
-/** What is another than it would be now; NULL: nothing. */
+/** Names a value that differs from the present one; NULL: none. */
 static const char *difference(const adcgs_stream *now, const adcgs_stream *then)
 {
     for (int a = 0; a < 3; a++)
@@ -129,12 +129,13 @@ adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, co
     adcgs_stream_init(&then);
     adcgs_status status = adcgs_encode_begin(&now, scene, cuts, notes, n_notes, error);
     if (status == ADCGS_OK)
-        adcgs_encode_place(&now, cuts, part, &none); /* for its time alone */
+        adcgs_encode_place(&now, cuts, part, &none); /* for its time only */
     if (status == ADCGS_OK)
         status = adcgs_enc_part_load(&then, name, cpu, pool, found, error);
     const char *const what = status == ADCGS_OK && *found ? difference(&now, &then) : NULL;
     if (what)
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: of another run: its %s is another", name, what);
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: belongs to another run: its %s differs: remove it, or name another "
+                                                   "output", name, what);
     adcgs_stream_clear(&now, NULL);
     adcgs_stream_clear(&then, NULL);
     free(name);
@@ -153,7 +154,7 @@ void adcgs_enc_part_await(const char *base, uint32_t part)
     free(name);
 }
 
-/** Move the notes of a part to the stream. */
+/** Moves the notes of a part to the stream. */
 static void take_notes(adcgs_stream *to, adcgs_stream *from)
 {
     to->meta = from->meta;
@@ -162,7 +163,7 @@ static void take_notes(adcgs_stream *to, adcgs_stream *from)
     from->n_meta = 0;
 }
 
-/** Read a part's stream, which has to be there; the caller clears it. */
+/** Reads a part's stream, which has to be present; the caller clears it. */
 static adcgs_status load_part(adcgs_stream *one, const char *base, uint32_t part, adcgs_cpu_level cpu, adcgs_pool *pool,
                               adcgs_error *error)
 {
@@ -172,7 +173,7 @@ static adcgs_status load_part(adcgs_stream *one, const char *base, uint32_t part
     ADCGS_TRY(adcgs_enc_part_name(&name, base, part, 1, error));
     adcgs_status status = adcgs_enc_part_load(one, name, cpu, pool, &found, error);
     if (status == ADCGS_OK && !found)
-        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: it is gone", name);
+        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: the file has been removed", name);
     free(name);
     return status;
 }

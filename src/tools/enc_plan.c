@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Plans, made and followed. */
+/** \file Makes plans and trains segments of plans. */
 #include "config.h"
 
 #include "tools/enc_plan.h"
@@ -27,7 +27,7 @@ static size_t size_of(adcgs_option_kind kind)
            kind == ADCGS_OPTION_STRING || kind == ADCGS_OPTION_FILE ? sizeof(char *) : sizeof(int);
 }
 
-/** The first option that was given and is none of the names, which end with NULL; NULL if there is none. */
+/** Returns the first given option that is not among the names, which end with NULL; NULL if there is none. */
 static const char *find_other(const adcgs_cli *cli, const adcgs_enc_options *o, const adcgs_enc_options *before,
                               const char *const *names)
 {
@@ -54,17 +54,17 @@ int adcgs_enc_plan_check(const adcgs_cli *cli, const adcgs_enc_options *o, const
                                             NULL };
     const char *const other = find_other(cli, o, before, o->has_segment ? learning : making);
     if (other && o->has_segment)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s: the plan says how its segments are learnt: give --plan and --segment "
-                               "without it", other);
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s: the plan sets the training of its segments: give --plan and "
+                                                     "--segment without it", other);
     if (other)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s is nothing that a plan has", other);
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s is not a setting of plans: leave it out", other);
     if (o->has_segment && (o->segment < 1 || o->segment != floor(o->segment)))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment %g: with --plan, the number of a segment is expected",
                                o->segment);
     return -1;
 }
 
-/* ---- Made ---- */
+/* ---- Making a plan ---- */
 
 static char *copy(const char *text, int *failed)
 {
@@ -80,7 +80,7 @@ static void take_outline(const adcgs_scene *scene, char text[2 * ADCGS_CONTENT_B
     adcgs_md5_hex(digest, text);
 }
 
-/** The head that all parts' streams will have. */
+/** The header that the streams of all parts share. */
 static adcgs_status plan_coding(adcgs_plan *p, const adcgs_enc_job *job, adcgs_error *error)
 {
     adcgs_stream head;
@@ -93,7 +93,7 @@ static adcgs_status plan_coding(adcgs_plan *p, const adcgs_enc_job *job, adcgs_e
     return status;
 }
 
-/** Cuts and follows are the job's. */
+/** Cuts and follows belong to the job. */
 static adcgs_status fill(adcgs_plan *p, adcgs_enc_job *job, const adcgs_scene_options *options, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
@@ -111,7 +111,7 @@ static adcgs_status fill(adcgs_plan *p, adcgs_enc_job *job, const adcgs_scene_op
     p->has_alpha = job->scene->has_alpha;
     memcpy(p->background, job->scene->background, sizeof p->background);
     p->cpu = job->cpu;
-    *c = job->whole; /* as it was before it was cut */
+    *c = job->whole; /* the configuration before cutting */
     c->has_details = !c->own_anchors && c->detail_anchors > 0;
     if (c->has_details)
         ADCGS_TRY(adcgs_plan_details(job->scene, c->scale, &c->details, error));
@@ -131,14 +131,14 @@ static adcgs_status make(adcgs_plan *p, adcgs_enc_job *job, const adcgs_scene_op
     uint32_t keys = 0;
     ADCGS_TRY(fill(p, job, options, error));
     ADCGS_TRY(adcgs_plan_write(p, job->scene, path, error));
-    adcgs_plan_clear(p); /* with the job's cuts */
+    adcgs_plan_clear(p); /* together with the job's cuts */
     job->cuts = (adcgs_cuts){ .n = 0 };
     ADCGS_TRY(adcgs_plan_read(p, path, error));
     for (uint32_t i = 0; i < p->cuts.n; i++) {
         cost += p->segments[i].cost;
         keys += !p->segments[i].follows;
     }
-    adcgs_cli_note(job->cli, "%s: %u segment%s, %u of them key%s; roughly %.0f s of one processor", path, p->cuts.n,
+    adcgs_cli_note(job->cli, "%s: %u segment%s, %u of them key%s; estimated %.0f s of one processor", path, p->cuts.n,
                    p->cuts.n > 1 ? "s" : "", keys, keys > 1 ? "s" : "", cost);
     return ADCGS_OK;
 }
@@ -157,9 +157,9 @@ adcgs_status adcgs_enc_plan_make(adcgs_enc_job *job, const adcgs_scene_options *
     return status;
 }
 
-/* ---- Followed ---- */
+/* ---- Training a segment ---- */
 
-/** The scene as the plan has it, without a look at pictures that are not the segment's. */
+/** Opens the scene of the plan, without reading images of other segments. */
 static adcgs_status open_scene(adcgs_enc_job *job, const adcgs_plan *p, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
@@ -171,7 +171,7 @@ static adcgs_status open_scene(adcgs_enc_job *job, const adcgs_plan *p, adcgs_er
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &options, error));
     take_outline(job->scene, outline);
     if (strcmp(outline, p->outline))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not the scene of %s, which was %.80s: cameras, times or points are others",
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not the scene of %s, which was %.80s: cameras, times or points differ",
                           o->scene, o->plan, p->scene ? p->scene : "?");
     job->scene->has_alpha = p->has_alpha;
     memcpy(job->scene->background, p->background, sizeof p->background);
@@ -180,13 +180,14 @@ static adcgs_status open_scene(adcgs_enc_job *job, const adcgs_plan *p, adcgs_er
     return ADCGS_OK;
 }
 
-/** What the plan says of how it is learnt. The cuts are lent. */
+/** Takes the training settings of the plan. The job borrows its cuts. */
 static adcgs_status take_settings(adcgs_enc_watcher *w, adcgs_enc_job *job, const adcgs_plan *p, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_plan_check_version(p, job->o->plan, error));
     if (adcgs_cpu_resolve(p->cpu, &job->cpu, error) != ADCGS_OK)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: for kernels of level %s, which this machine has not: a plan with "
-                          "--cpu %s is for all that have these", job->o->plan, adcgs_cpu_name(p->cpu),
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: for kernels of level %s, which this machine lacks: a plan made with "
+                                                        "--cpu %s fits all machines that have "
+                                                        "those", job->o->plan, adcgs_cpu_name(p->cpu),
                           adcgs_cpu_name(adcgs_cpu_best()));
     job->plan = p;
     job->config = p->config;
@@ -233,7 +234,7 @@ static adcgs_status report(const adcgs_enc_job *job, const adcgs_enc_watcher *w,
     return adcgs_json_write(&j, stdout, "standard output", error);
 }
 
-/** It is there already, or it is learnt. */
+/** Trains the segment, unless it is present already. */
 static adcgs_status learn(adcgs_enc_watcher *w, adcgs_enc_job *job, const char *name, adcgs_error *error)
 {
     adcgs_stream there;
@@ -242,7 +243,7 @@ static adcgs_status learn(adcgs_enc_watcher *w, adcgs_enc_job *job, const char *
     adcgs_status status = adcgs_plan_part_load(&there, job->plan, w->base, w->segment, job->cpu, job->pool, &found, error);
     adcgs_stream_clear(&there, NULL);
     if (status == ADCGS_OK && found) {
-        adcgs_cli_note(job->cli, "%s: is there already", name);
+        adcgs_cli_note(job->cli, "%s: present already", name);
         return ADCGS_OK;
     }
     if (status == ADCGS_OK)

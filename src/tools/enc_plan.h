@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-enc --plan: a plan for the segments of a scene, and one segment learnt by it. */
+/** \file adcgs-enc --plan: makes a plan of a scene's segments, or trains one of its segments. */
 #ifndef ADCGS_TOOLS_ENC_PLAN_H
 #define ADCGS_TOOLS_ENC_PLAN_H
 
@@ -7,17 +7,17 @@
 #include "tools/enc_run.h"
 
 /**
- * Whether the options that were given go with --plan, while cli has their table; before: what they were before any was given. A
- * mistake is reported. \return -1 to go on, else the exit code
+ * Checks the given options with --plan, while cli has their table, and reports a mistake. before: the options before parsing.
+ * \return -1 to continue, else the exit code
  */
 int adcgs_enc_plan_check(const adcgs_cli *cli, const adcgs_enc_options *o, const adcgs_enc_options *before);
 
-/** Write the plan, job->o->plan, of a scene that is opened as the options say; nothing is learnt. */
+/** Writes the plan, job->o->plan, of a scene that is opened by the options; trains nothing. */
 adcgs_status adcgs_enc_plan_make(adcgs_enc_job *job, const adcgs_scene_options *options, adcgs_error *error);
 
 /**
- * Learn segment job->o->segment, from 1, as the plan says: from its checkpoint if there is one, from the part before if it
- * follows one. Of pictures, only its own are read. Nothing is done where its part is there already.
+ * Trains segment job->o->segment, from 1, as planned: from its checkpoint if there is one, and from the previous part if it
+ * follows one. Reads only the segment's own images. Does nothing if the part is present already.
  */
 adcgs_status adcgs_enc_plan_learn(adcgs_enc_watcher *watcher, adcgs_enc_job *job, adcgs_error *error);
 

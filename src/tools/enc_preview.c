@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A picture of how far a run is. */
+/** \file Preview image of a run. */
 #include "config.h"
 
 #include "tools/enc_preview.h"
@@ -13,14 +13,14 @@
 #define EVERY 30.0 /* seconds */
 enum { SIDE_MOST = 800 };
 
-/** The middle one of those for validation, which are not trained on, or of what there is but for tests, at which nobody looks. */
+/** The middle validation view, which is not trained on, or the middle training view. Test views are never used. */
 static const adcgs_scene_view *choose(const adcgs_scene *scene)
 {
     const adcgs_split split = scene->n_views[ADCGS_SPLIT_VAL] ? ADCGS_SPLIT_VAL : ADCGS_SPLIT_TRAIN;
     return &scene->views[split][scene->n_views[split] / 2];
 }
 
-/** The view by the model of now. It takes nothing that an iteration has left for another. */
+/** Renders the view with the current model, without changing any state of the iterations. */
 static adcgs_status draw(float *image, adcgs_trainer *t, const adcgs_scene_view *of, const adcgs_camera *camera,
                          adcgs_error *error)
 {
@@ -47,7 +47,7 @@ static adcgs_status place(adcgs_mosaic *mosaic, adcgs_trainer *t, const adcgs_sc
     return status;
 }
 
-/** t NULL: there is no model yet. */
+/** t NULL: no model yet. */
 static adcgs_status write_preview(const char *path, const adcgs_scene *scene, adcgs_trainer *t, adcgs_error *error)
 {
     const adcgs_scene_view *const view = choose(scene);
@@ -83,5 +83,5 @@ void adcgs_enc_preview_show(adcgs_enc_preview *preview, adcgs_trainer *t, const 
         return;
     preview->failed = 1;
     adcgs_progress_clear(progress);
-    adcgs_cli_error(progress->cli, ADCGS_OK, "%s; the run goes on, and tries again now and then", why.text);
+    adcgs_cli_error(progress->cli, ADCGS_OK, "%s; the run continues, and tries again later", why.text);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A picture of how far a run is: a view as it was taken, and beside it as the model shows it now. */
+/** \file Preview image of a run: a view as filmed, and next to it as the model renders it now. */
 #ifndef ADCGS_TOOLS_ENC_PREVIEW_H
 #define ADCGS_TOOLS_ENC_PREVIEW_H
 
@@ -7,17 +7,17 @@
 #include "train/state.h"
 
 typedef struct adcgs_enc_preview {
-    const char *path;  /**< NULL: nobody wants one */
-    const char *stage; /**< of the last one */
-    double drawn;      /**< seconds of the run at which that was */
-    int failed;        /**< it could not be drawn, or written, which has been said */
+    const char *path;  /**< NULL: no preview */
+    const char *stage; /**< of the last preview */
+    double drawn;      /**< seconds of the run at the last preview */
+    int failed;        /**< rendering or writing has failed, and was reported */
 } adcgs_enc_preview;
 
-/** Write it before there is a model, all white in its place: so it turns out whether it can be written. */
+/** Writes the preview before there is a model, white in the model's place, to find out whether it can be written. */
 adcgs_status adcgs_enc_preview_begin(const char *path, const adcgs_scene *scene, adcgs_error *error);
 /**
- * Write it anew if 30 seconds of the run have gone by, or another stage has begun; NULL as stage: in any case. The run does not
- * depend on it, nor ends if it fails, which is said once. To be called between iterations.
+ * Writes the preview again after 30 seconds of the run or at a new stage; stage NULL: in any case. Neither the preview nor its
+ * failure, reported once, affects the run. Call it between iterations.
  */
 void adcgs_enc_preview_show(adcgs_enc_preview *preview, adcgs_trainer *t, const char *stage, adcgs_progress *progress);
 

@@ -9,12 +9,12 @@
 #include <time.h>
 
 #define NAP 10000000L  /* nanoseconds */
-#define TELL_EVERY 0.5 /* seconds between two notes of how far a segment is */
+#define TELL_EVERY 0.5 /* seconds between two progress notes of a segment */
 
 adcgs_rank_note adcgs_rank_say(int kind, const adcgs_enc_job *job)
 {
     adcgs_rank_note n;
-    memset(&n, 0, sizeof n); /* with what lies between its members: all of it is sent */
+    memset(&n, 0, sizeof n); /* includes padding: the whole struct is sent */
     n.kind = kind;
     n.level = (int32_t)job->cpu;
     memcpy(n.host, job->ranks->host, sizeof n.host);
@@ -43,7 +43,7 @@ static void take_report(adcgs_rank_note *n, const adcgs_enc_watcher *w)
     n->psnr = w->last.psnr;
 }
 
-/** Learn the note's segment, the first of a team with the others, who are told. A failure is that of a rank and its segment. */
+/** Trains the note's segment. The first rank of a team informs the others. A failure names the rank and its segment. */
 static adcgs_status learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_rank_note *n, adcgs_error *error)
 {
     n->spent = (adcgs_time){ 0, 0 };
@@ -60,12 +60,12 @@ static adcgs_status learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_
                                                     job->ranks->host, n->segment + 1, why.text);
 }
 
-/* ---- Behind rank 0 ---- */
+/* ---- Ranks after rank 0 ---- */
 
 typedef struct follower {
     const adcgs_ranks *ranks;
     adcgs_rank_note last;
-    double told; /* when */
+    double told; /* time of the last progress note */
 } follower;
 
 static int tell(void *user, const adcgs_enc_watcher *w)
@@ -90,7 +90,7 @@ int adcgs_rank_hear_nothing(void *user, const adcgs_enc_watcher *w)
 
 adcgs_status adcgs_rank_follow(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
 {
-    const int leads = !w->team.team.rank && w->team.team.size; /* a team, or learns alone */
+    const int leads = !w->team.team.rank && w->team.team.size; /* a team, or trains alone */
     follower f = { .ranks = job->ranks, .last = adcgs_rank_say(ADCGS_RANK_READY, job) };
     w->hear = leads ? tell : adcgs_rank_hear_nothing;
     w->hear_user = &f;
@@ -116,7 +116,7 @@ adcgs_status adcgs_rank_follow(adcgs_enc_watcher *w, const adcgs_enc_job *job, a
     }
 }
 
-/* ---- Beside what rank 0 hands out ---- */
+/* ---- Training in rank 0, next to handing out ---- */
 
 static int hear(void *user, const adcgs_enc_watcher *w)
 {
@@ -161,7 +161,7 @@ adcgs_status adcgs_rank_start(adcgs_rank_learner *l, adcgs_error *error)
         return ADCGS_OK;
     pthread_mutex_destroy(&l->lock);
     pthread_cond_destroy(&l->wake);
-    return adcgs_fail(error, ADCGS_ERR_MEMORY, "no thread to learn in");
+    return adcgs_fail(error, ADCGS_ERR_MEMORY, "cannot start a thread for training");
 }
 
 void adcgs_rank_give(adcgs_rank_learner *l, const adcgs_rank_note *n)

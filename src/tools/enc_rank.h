@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file One of the ranks of adcgs-enc (enc_ranks.h): what it says, and how it learns what it is given. */
+/** \file One of the ranks of adcgs-enc (enc_ranks.h): its notes, and training of the segments that it receives. */
 #ifndef ADCGS_TOOLS_ENC_RANK_H
 #define ADCGS_TOOLS_ENC_RANK_H
 
@@ -7,31 +7,31 @@
 
 #include <pthread.h>
 
-/** A rank is READY once, is told to LEARN, tells then how far it is (TOLD), and is free again with each DONE. */
+/** A rank sends READY once, receives LEARN, then sends its progress (TOLD), and is free again after each DONE. */
 enum { ADCGS_RANK_READY, ADCGS_RANK_LEARN, ADCGS_RANK_TOLD, ADCGS_RANK_DONE, ADCGS_RANK_DISMISS };
 
-/** What ranks say to each other. */
+/** A message between ranks. */
 typedef struct adcgs_rank_note {
     int32_t kind, level; /**< level: of the kernels */
     uint32_t segment, iteration, iterations;
     double rate, loss, psnr;
-    adcgs_time spent;    /**< DONE: in learning this segment */
+    adcgs_time spent;    /**< DONE: on training this segment */
     char host[ADCGS_RANKS_HOST];
 } adcgs_rank_note;
 
-/** A note of this rank, without a segment. */
+/** Returns a note of this rank, without a segment. */
 adcgs_rank_note adcgs_rank_say(int kind, const adcgs_enc_job *job);
-/** Sleep for a moment, between two looks for notes. */
+/** Sleeps shortly between two checks for notes. */
 void adcgs_rank_nap(void);
 
-/** The same failure as that of this rank; of a run that is not cut. */
+/** Returns the same failure with the rank's name, for a run that is not cut. */
 adcgs_status adcgs_rank_fail(const adcgs_enc_job *job, adcgs_error *error);
-/** For the ranks of a team but the first, of which nobody wants to hear. */
+/** For the ranks of a team except the first, which report nothing. */
 int adcgs_rank_hear_nothing(void *user, const adcgs_enc_watcher *watcher);
-/** Learn what rank 0 hands out, or the first of the team, until rank 0 has nothing more. */
+/** Trains the segments from rank 0, or from the first rank of the team, until rank 0 has no more. */
 adcgs_status adcgs_rank_follow(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, adcgs_error *error);
 
-/** Rank 0's own learning, in a thread beside the one that hands out. What is below the lock is both threads'. */
+/** Rank 0's own training, in a thread next to the one that hands out segments. Both threads use the members below the lock. */
 typedef struct adcgs_rank_learner {
     adcgs_enc_watcher *w;
     const adcgs_enc_job *job;
@@ -44,13 +44,13 @@ typedef struct adcgs_rank_learner {
     adcgs_error error;
 } adcgs_rank_learner;
 
-/** w and job are set, all else is zero. */
+/** w and job are set, all others zero. */
 adcgs_status adcgs_rank_start(adcgs_rank_learner *learner, adcgs_error *error);
-/** Have it learn what a note says; it has nothing else to do. */
+/** Starts training of the note's segment; the learner has to be idle. */
 void adcgs_rank_give(adcgs_rank_learner *learner, const adcgs_rank_note *note);
-/** What it would say: how far it is, or once that it is done. */
+/** Returns the learner's note: its progress, or once that it is done. */
 adcgs_status adcgs_rank_ask(adcgs_rank_learner *learner, adcgs_rank_note *note, int *is_done, adcgs_error *error);
-/** Stop what it learns, whose state it saves, and end the thread. */
+/** Stops the training, which saves its state, and ends the thread. */
 void adcgs_rank_end(adcgs_rank_learner *learner);
 
 #endif

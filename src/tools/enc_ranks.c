@@ -17,7 +17,7 @@
 #include <sched.h>
 #endif
 
-#define SHOWN 6 /* segments in the line of progress */
+#define SHOWN 6 /* segments in the progress line */
 
 typedef enum state { MISSING, BEGUN, FINISHED } state;
 
@@ -26,8 +26,8 @@ typedef struct leader {
     const adcgs_enc_job *job;
     const adcgs_ranks *ranks;
     state *states;         /* [segments] */
-    adcgs_rank_note *last; /* [ranks] what each has said, or that it was told to learn */
-    uint8_t *there;        /* [ranks] it has said something */
+    adcgs_rank_note *last; /* [ranks] the last note of each, or that it was told to train */
+    uint8_t *there;        /* [ranks] it has sent a note */
     uint32_t done;
     adcgs_rank_note final; /* of the last segment */
     adcgs_time *spent;
@@ -41,7 +41,7 @@ int adcgs_enc_ranks_threads(const adcgs_ranks *r)
     int share = (int)(online / ADCGS_MAX(r->local_size, 1));
 #ifdef __linux__
     cpu_set_t mine;
-    if (!sched_getaffinity(0, sizeof mine, &mine) && CPU_COUNT(&mine) < online) /* mpirun has given it some of its own */
+    if (!sched_getaffinity(0, sizeof mine, &mine) && CPU_COUNT(&mine) < online) /* mpirun has assigned some CPUs to it */
         share = CPU_COUNT(&mine);
 #endif
     return ADCGS_MAX(share, 1);
@@ -56,9 +56,9 @@ void adcgs_enc_ranks_dismiss(const adcgs_ranks *ranks)
         adcgs_ranks_send(ranks, to, &n, sizeof n);
 }
 
-/* ---- Who learns what with whom ---- */
+/* ---- Distribution of the work ---- */
 
-/** How many segments can be learnt at a time, at most: the keys, or the one that is all of the scene. */
+/** Maximum number of segments that can be trained concurrently: the keys, or the only segment of the scene. */
 static uint32_t keys_of(const adcgs_enc_job *job)
 {
     uint32_t keys = job->cuts.n < 2;
@@ -67,7 +67,7 @@ static uint32_t keys_of(const adcgs_enc_job *job)
     return keys;
 }
 
-/** Say so, where ranks wait that could be of use. */
+/** Reports ranks that stay idle and could be used. */
 static void say_idle(const adcgs_enc_job *job)
 {
     const uint32_t keys = keys_of(job), batch = job->config.batch;
@@ -75,30 +75,30 @@ static void say_idle(const adcgs_enc_job *job)
     if (busy == ranks)
         return;
     if (job->cuts.n > 1)
-        adcgs_cli_note(job->cli, "%u segments, %u of them keys, batch=%u: no more than %d of %d ranks have something to do at a "
-                       "time; --key makes more, or --set batch=", job->cuts.n, keys, batch, busy, ranks);
+        adcgs_cli_note(job->cli, "%u segments, %u of them keys, batch=%u: at most %d of %d ranks work at a time; --key makes "
+                                 "more, or --set batch=", job->cuts.n, keys, batch, busy, ranks);
     else
-        adcgs_cli_note(job->cli, "one segment, batch=%u: no more than %d of %d ranks have something to do; --set batch= makes "
-                       "more", batch, busy, ranks);
+        adcgs_cli_note(job->cli, "one segment, batch=%u: at most %d of %d ranks work; --set batch= makes "
+                                 "more", batch, busy, ranks);
 }
 
 adcgs_status adcgs_enc_ranks_gather(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
 {
-    if (!job->ranks || job->o->finish) /* which trains nothing */
+    if (!job->ranks || job->o->finish) /* it trains nothing */
         return ADCGS_OK;
     adcgs_enc_team_form(&w->team, job->ranks, job->config.batch, keys_of(job));
     w->keeps &= !adcgs_enc_team_follows(&w->team);
     return adcgs_enc_team_meet(&w->team, job->cpu, error);
 }
 
-/** Rank 0 waits for one of its team, and was interrupted: perhaps that is gone. */
+/** Reports that rank 0 was interrupted while it waits for a rank of its team, which may have ended. */
 static void say_late(void *user, int rank, const char *host)
 {
     adcgs_enc_watcher *w = user;
     const int keeps = !access(w->state, F_OK);
     adcgs_progress_clear(&w->progress);
     adcgs_cli_error(w->progress.cli, ADCGS_OK, "interrupted at iteration %u, waiting for rank %d on %s; %s%s", w->last.iteration,
-                    rank, host, keeps ? "the same command goes on with --resume " : "there is no --checkpoint",
+                    rank, host, keeps ? "continue with the same command and --resume " : "there is no --checkpoint",
                     keeps ? w->state : "");
 }
 
@@ -122,7 +122,7 @@ static int is_free(const leader *l, int rank)
     return l->there[rank] && (l->last[rank].kind == ADCGS_RANK_READY || l->last[rank].kind == ADCGS_RANK_DONE);
 }
 
-/** How many segments can be learnt one after the other from this one on. */
+/** Number of segments that can be trained one after the other, from this one on. */
 static uint32_t chain(const leader *l, uint32_t segment)
 {
     uint32_t n = 1;
@@ -131,7 +131,7 @@ static uint32_t chain(const leader *l, uint32_t segment)
     return n;
 }
 
-/** The segment to learn next; their number if there is none now. */
+/** The segment to train next; the number of segments if there is none now. */
 static uint32_t choose(const leader *l)
 {
     uint32_t best = l->job->cuts.n, longest = 0;
@@ -162,8 +162,9 @@ static adcgs_status hear_note(leader *l, int rank, const adcgs_rank_note *n, adc
     l->last[rank] = *n;
     l->there[rank] = 1;
     if (n->kind == ADCGS_RANK_READY && n->level != (int32_t)l->job->cpu)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "rank %d on %s has kernels of level %s, rank 0 those of %s, which learn "
-                          "otherwise: give --cpu", rank, n->host, adcgs_cpu_name((adcgs_cpu_level)n->level),
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "rank %d on %s has kernels of level %s, rank 0 those of %s, which train "
+                                                        "differently: give "
+                                                        "--cpu", rank, n->host, adcgs_cpu_name((adcgs_cpu_level)n->level),
                           adcgs_cpu_name(l->job->cpu));
     if (n->kind != ADCGS_RANK_DONE)
         return ADCGS_OK;
@@ -190,7 +191,7 @@ static adcgs_status hear_all(leader *l, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** One line for all ranks. */
+/** One progress line for all ranks. */
 static void show(leader *l)
 {
     char text[SHOWN * 40 + 8] = "", left[32];
@@ -211,7 +212,7 @@ static void show(leader *l)
                         rate, adcgs_enc_left(rate > 0 ? fmax(iterations, 0) / rate : (double)NAN, left));
 }
 
-/** Who was at what: a line for all, since whoever ended them has named one at most. */
+/** Reports all ranks with their segments in one line, since the signal's sender has named at most one. */
 static void say_stopped(leader *l)
 {
     char text[400] = "";
@@ -221,7 +222,8 @@ static void say_stopped(leader *l)
             at += (size_t)snprintf(text + at, sizeof text - at, "%srank %d on %s at iteration %u of segment %u", at ? ", " : "",
                                    i, l->last[i].host, l->last[i].iteration, l->last[i].segment + 1);
     adcgs_progress_clear(&l->progress);
-    adcgs_cli_error(l->job->cli, ADCGS_OK, "stopped, with %u of %u segments done%s%s; the same command and --resume %s go on",
+    adcgs_cli_error(l->job->cli, ADCGS_OK, "stopped, with %u of %u segments done%s%s; continue with the same command and "
+                                           "--resume %s",
                     l->done, l->job->cuts.n, *text ? ": " : "", text, l->w->base);
 }
 
@@ -244,7 +246,7 @@ static adcgs_status lead(leader *l, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** What is there of an earlier run. */
+/** Finds the segments of an earlier run. */
 static adcgs_status find_done(leader *l, adcgs_error *error)
 {
     for (uint32_t i = 0; i < l->job->cuts.n; i++) {

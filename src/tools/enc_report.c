@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What adcgs-enc reports of a file it has written. */
+/** \file The report of adcgs-enc on a written file. */
 #include "tools/enc_report.h"
 
 #include "cli/text.h"
@@ -12,24 +12,24 @@
 #include <math.h>
 #include <stdlib.h>
 
-/** How far a size may stay below what was asked for, and a PSNR be from it. */
+/** Tolerances of the targets: size below the requested one, as a share; PSNR, dB. */
 #define SIZE_WITHIN 0.03
 #define PSNR_WITHIN 0.1
 
-/** What was asked for, and what came out; kind NULL: nothing was. */
+/** The target and the result; kind NULL: no target. */
 typedef struct outcome {
     const char *kind;
     double value, reached;
     int met;
 } outcome;
 
-/** What of the result is printed. */
+/** The printed result. */
 typedef struct result {
     adcgs_info info;
     adcgs_evaluation quality; /**< of the views of split */
     adcgs_split split;
     outcome target;
-    double lambda;            /**< of the last segment, as the file tells */
+    double lambda;            /**< of the last segment, from the file */
 } result;
 
 static void print_text(const adcgs_enc_report *r, const result *x)
@@ -49,7 +49,7 @@ static void print_text(const adcgs_enc_report *r, const result *x)
             x->quality.psnr, x->quality.ssim);
 }
 
-/** Six digits of it: 0.01 was a float on its way here. */
+/** Rounds to six digits: 0.01 was a float before. */
 static double shown(double x)
 {
     char text[32];
@@ -111,7 +111,7 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
     return adcgs_json_write(&j, stdout, "standard output", error);
 }
 
-/** Views as they are measured. */
+/** Progress of the measurement. */
 typedef struct counter {
     adcgs_progress progress;
     uint32_t done, n;
@@ -128,7 +128,7 @@ static adcgs_status count_view(void *user, const adcgs_view_score *score, adcgs_
     return ADCGS_OK;
 }
 
-/** PSNR and SSIM of a split's views. */
+/** Measures PSNR and SSIM of a split's views. */
 static adcgs_status evaluate(adcgs_evaluation *out, const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_enc_report *r,
                              adcgs_split split, adcgs_error *error)
 {
@@ -140,7 +140,7 @@ static adcgs_status evaluate(adcgs_evaluation *out, const adcgs_cli *cli, adcgs_
     return status;
 }
 
-/** Compare with the target. The PSNR of training views is measured from the file like any other. */
+/** Compares the result with the target. The PSNR of training views is measured from the file like any other. */
 static adcgs_status judge(const adcgs_cli *cli, outcome *o, const adcgs_enc_report *r, const adcgs_info *info,
                           adcgs_decoder *decoder, adcgs_error *error)
 {
@@ -164,12 +164,12 @@ static void say_missed(const adcgs_cli *cli, const adcgs_enc_report *r, const ou
 {
     if (!strcmp(o->kind, "size"))
         adcgs_cli_error(cli, ADCGS_OK,
-                        "%s: %.0f bytes, smaller than the %.0f asked for: more anchors, or a longer run, would use them", r->file,
+                        "%s: %.0f bytes, smaller than the requested %.0f: more anchors, or a longer run, would use them", r->file,
                         o->reached, o->value);
     else
-        adcgs_cli_error(cli, ADCGS_OK, "%s: the training views have %.2f dB instead of the %.2f asked for: %s", r->file,
+        adcgs_cli_error(cli, ADCGS_OK, "%s: the training views have %.2f dB instead of the requested %.2f: %s", r->file,
                         o->reached, o->value,
-                        o->reached < o->value ? "the best that this run can do" : "the least that this run can do");
+                        o->reached < o->value ? "the maximum of this run" : "the minimum of this run");
 }
 
 static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_report *r, adcgs_decoder *decoder,
@@ -185,7 +185,7 @@ static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_rep
     return judge(cli, &x->target, r, &x->info, decoder, error);
 }
 
-/** What could not be measured is complete all the same. */
+/** The file is complete, even if it could not be measured. */
 static void say_written(const adcgs_enc_report *r, adcgs_error *error)
 {
     const adcgs_error why = *error;
@@ -214,7 +214,7 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
         status = print_json(r, &x, error);
     else if (status == ADCGS_OK && !*cli->quiet)
         print_text(r, &x);
-    /* Views for testing are as they were taken: of other light than those that it was evened out of. */
+    /* Test views keep their original light, so they do not match training views with evened light. */
     const int tells = x.split != ADCGS_SPLIT_TRAIN && !r->config->even_light;
     if (status == ADCGS_OK)
         adcgs_enc_doubt(cli, decoder, r->scene, tells ? x.quality.psnr : (double)NAN, r->file, r->heard);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file States that a run leaves when it is stopped, or fails. */
+/** \file States that a run leaves when it is stopped or fails. */
 #include "config.h"
 
 #include "tools/enc_rescue.h"
@@ -14,7 +14,7 @@ int adcgs_enc_is_ready(const adcgs_enc_watcher *w)
     return w->o->output && !w->segments && w->t->iteration;
 }
 
-/** The same last part in the folder of temporary files, from malloc(). */
+/** Returns the same base name in the folder of temporary files, from malloc(). */
 static char *name_elsewhere(const char *name)
 {
     char *const folder = adcgs_spool_folder(), *const slash = strrchr(name, '/');
@@ -27,7 +27,7 @@ adcgs_status adcgs_enc_save(const adcgs_enc_watcher *w, const char *name, int re
 {
     adcgs_error ignored;
     adcgs_status status = reads_images ? adcgs_trainer_save(w->t, name, error) : adcgs_trainer_rescue(w->t, name, error);
-    if (status != ADCGS_OK && !w->t->has_content && reads_images) /* images that cannot be read are no reason to lose it */
+    if (status != ADCGS_OK && !w->t->has_content && reads_images) /* unreadable images must not prevent saving the state */
         status = adcgs_trainer_rescue(w->t, name, error);
     *path = status == ADCGS_OK ? strdup(name) : name_elsewhere(name);
     if (status != ADCGS_OK && *path && adcgs_trainer_rescue(w->t, *path, &ignored) == ADCGS_OK)
@@ -45,12 +45,12 @@ void adcgs_enc_say_how_to_go_on(const adcgs_cli *cli, const adcgs_enc_watcher *w
     if (w->segments)
         snprintf(at, sizeof at, " of segment %u of %u", w->segment + 1, w->segments);
     if (w->segments && is_elsewhere)
-        adcgs_cli_error(cli, ADCGS_OK, "%s at iteration %u%s; move %s to %s, and go on with the same command%s%s", what,
+        adcgs_cli_error(cli, ADCGS_OK, "%s at iteration %u%s; move %s to %s, and continue with the same command%s%s", what,
                         adcgs_trainer_rescued(w->t), at, path, w->state, resume, base);
     else
         adcgs_cli_error(cli, ADCGS_OK, "%s at iteration %u%s; %s%s%s%s", what, adcgs_trainer_rescued(w->t), at,
-                        w->o->plan ? "the same command goes on" : "go on with the same command", resume, base,
-                        adcgs_enc_is_ready(w) ? "; or --finish it: a file of what there is" : "");
+                        w->o->plan ? "continue with the same command" : "continue with the same command", resume, base,
+                        adcgs_enc_is_ready(w) ? "; or make a file of this state with --finish" : "");
 }
 
 void adcgs_enc_rescue(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_status status)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The room that a run's images take. */
+/** \file Memory and disk space for a run's images. */
 #include "tools/enc_room.h"
 
 #include "cli/text.h"
@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-/** "46.9 GB". */
+/** Formats "46.9 GB". */
 static const char *show_bytes(uint64_t bytes, char text[24])
 {
     static const char *const units[] = { "bytes", "kB", "MB", "GB", "TB" };

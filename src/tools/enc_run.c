@@ -17,17 +17,17 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* ---- What the run shows and logs ---- */
+/* ---- Progress and log ---- */
 
 static void log_line(adcgs_enc_watcher *w, adcgs_json *line)
 {
     if (adcgs_json_write(line, w->log, w->o->log, &w->log_error) != ADCGS_OK) {
-        fclose(w->log); /* the run is worth more than its log: it goes on, and says at its end what happened */
+        fclose(w->log); /* the run continues without its log, and reports this at its end */
         w->log = NULL;
     }
 }
 
-/** Begin a line: what all of them have. */
+/** Begins a line with the members of all lines. */
 static void open_line(adcgs_enc_watcher *w, adcgs_json *line, const char *stage)
 {
     adcgs_json_init(line);
@@ -40,7 +40,7 @@ static void open_line(adcgs_enc_watcher *w, adcgs_json *line, const char *stage)
     adcgs_json_int(line, "iteration", w->last.iteration);
 }
 
-/** At the end of a run: why its model is as large as it is. */
+/** At the end of a run: the reasons for the model's size. */
 static void log_decisions(adcgs_enc_watcher *w)
 {
     adcgs_decision list[ADCGS_DECISIONS];
@@ -97,7 +97,7 @@ const char *adcgs_enc_left(double seconds, char text[32])
     return isnan(seconds) ? "" : text;
 }
 
-/** The run is worth more than its checkpoint: where one cannot be written it goes on, and tries again when the next is due. */
+/** Saves a checkpoint. If that fails the run continues, and tries again when the next one is due. */
 static void save_now_and_then(adcgs_enc_watcher *w, double seconds)
 {
     adcgs_error why = { ADCGS_OK, "" };
@@ -108,7 +108,7 @@ static void save_now_and_then(adcgs_enc_watcher *w, double seconds)
         return;
     adcgs_progress_clear(&w->progress);
     if (w->unsaved)
-        adcgs_cli_error(w->progress.cli, ADCGS_OK, "%s; the run goes on, and tries again every %g s", why.text,
+        adcgs_cli_error(w->progress.cli, ADCGS_OK, "%s; the run continues, and tries again every %g s", why.text,
                         w->o->checkpoint_every);
     else
         adcgs_cli_note(w->progress.cli, "%s: written again", w->state);
@@ -120,7 +120,7 @@ static void forget_glances(adcgs_enc_watcher *w)
     w->t->glances = w->glances = NULL;
 }
 
-/** As soon as pictures are there, and before hours are spent on them. */
+/** Checks the footage once its images are loaded, before hours are spent on it. */
 static void look_at_footage(adcgs_enc_watcher *w)
 {
     if (!w->glances || !w->t->divide)
@@ -148,7 +148,7 @@ static int observe(void *user, const adcgs_train_report *r)
     w->last = *r;
     if (r->iteration && !w->first.iteration)
         w->first = *r;
-    if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back, and another try */
+    if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back, and so does another try */
         log_last(w);
     if (w->hear)
         stops = w->hear(w->hear_user, w);
@@ -167,12 +167,12 @@ static int loading(void *user, uint32_t done, uint32_t n)
 {
     adcgs_enc_watcher *w = user;
     if (!w->hear)
-        adcgs_progress_show(&w->progress, "pictures  %6u/%u", done, n);
-    /* Later there is a run to save, which it is once they are loaded. */
+        adcgs_progress_show(&w->progress, "images    %6u/%u", done, n);
+    /* Later there is a run to save, after the images are loaded. */
     return adcgs_interrupted() && !w->t->iteration && !w->is_live;
 }
 
-/* ---- What the stream tells ---- */
+/* ---- Notes in the stream ---- */
 
 void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes)
 {
@@ -193,7 +193,7 @@ void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char
             n->list[n->n++] = some[i];
 }
 
-/** The bytes that the run's file would have. */
+/** The bytes of the run's file. */
 static adcgs_status measure(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *error)
 {
     const adcgs_enc_watcher *w = user;
@@ -211,13 +211,13 @@ adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const a
     return adcgs_encode_verified(stream, bytes, w->t->cpu, pool, error);
 }
 
-/* ---- Learning ---- */
+/* ---- Training ---- */
 
 static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
 {
     char *path;
     if (adcgs_enc_is_ready(w) && adcgs_interrupts() < 2)
-        adcgs_cli_error(cli, ADCGS_OK, "interrupted: the state is being saved; a second interrupt makes a file of what there is");
+        adcgs_cli_error(cli, ADCGS_OK, "interrupted: saving the state; a second interrupt makes a file of the present state");
     ADCGS_TRY(adcgs_enc_save(w, w->state, 1, &path, error));
     if (!w->hear) /* else the listener reports for all */
         adcgs_enc_say_how_to_go_on(cli, w, "stopped", path);
@@ -225,37 +225,37 @@ static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs
     return ADCGS_OK;
 }
 
-/** Make of a run, wherever it stands, what can be written. */
+/** Makes a stream of a run at any stage. */
 static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
 {
     if (!adcgs_trainer_moves(w->t))
-        adcgs_cli_error(cli, ADCGS_OK, "%s: at iteration %u of %u nothing moves yet: the file shows a still, coarse scene; a run "
-                        "of -n %u shows far more", w->target, w->t->iteration, w->t->config.iterations,
+        adcgs_cli_error(cli, ADCGS_OK, "%s: at iteration %u of %u nothing moves yet: the file shows a static, coarse scene; a "
+                                       "run of -n %u shows far more", w->target, w->t->iteration, w->t->config.iterations,
                         ADCGS_MAX(w->t->iteration, 300));
-    adcgs_progress_show(&w->progress, "finish    what there is after iteration %u ...", w->t->iteration);
+    adcgs_progress_show(&w->progress, "finish  the state after iteration %u ...", w->t->iteration);
     const adcgs_status status = adcgs_trainer_finish(w->t, &w->last, error);
     adcgs_progress_clear(&w->progress);
     ADCGS_TRY(status);
     adcgs_enc_preview_show(&w->preview, w->t, NULL, &w->progress);
-    adcgs_cli_note(cli, "a file of what there is after iteration %u of %u", w->t->iteration, w->t->config.iterations);
+    adcgs_cli_note(cli, "a file of the state after iteration %u of %u", w->t->iteration, w->t->config.iterations);
     log_last(w);
     log_decisions(w);
     return ADCGS_OK;
 }
 
-/** What the user would not know from figures alone. */
+/** Remarks that the figures alone do not show. */
 static void remark(const adcgs_cli *cli, const adcgs_enc_watcher *w)
 {
     const adcgs_trainer *t = w->t;
     if (t->rollbacks)
-        adcgs_cli_note(cli, "training began to diverge; it went on from before, with half the learning rates%s",
+        adcgs_cli_note(cli, "training began to diverge; it continued from an earlier state, with half the learning rates%s",
                        t->rollbacks > 1 ? ", more than once" : "");
     if (adcgs_trainer_is_lost(t))
-        adcgs_cli_note(cli, "the training views are drawn with %.1f dB, where one colour for all would have %.1f: check %s",
+        adcgs_cli_note(cli, "the training views are rendered with %.1f dB, where a single colour would have %.1f: check %s",
                        w->last.psnr, adcgs_psnr_from_mse(t->contrast * t->contrast), "poses, points and settings");
 }
 
-/** Train, as one of a team if there is one; processors' time is that of all, but for what a checkpoint knows of. */
+/** Trains, in a team if there is one. The processor time is that of all ranks, except for time from a checkpoint. */
 static adcgs_status run(adcgs_enc_watcher *w, int *stopped, adcgs_error *error)
 {
     const double before = w->t->elapsed.cpu;
@@ -279,7 +279,7 @@ static adcgs_status save_beginning(const adcgs_cli *cli, adcgs_enc_watcher *w, a
     return ADCGS_OK;
 }
 
-/** state: a checkpoint to go on from, or NULL. */
+/** state: a checkpoint to continue from, or NULL. */
 static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char *state, adcgs_error *error)
 {
     int stopped;
@@ -295,7 +295,7 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
         adcgs_interrupt_catch(w->o->output && !w->segments ? 2 : 1);
     const adcgs_status status = run(w, &stopped, error);
     adcgs_progress_clear(&w->progress);
-    if (status == ADCGS_OK && adcgs_enc_team_follows(&w->team)) /* another rank says and saves what there is */
+    if (status == ADCGS_OK && adcgs_enc_team_follows(&w->team)) /* another rank reports and saves the state */
         return stopped && adcgs_interrupted() ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted") : ADCGS_OK;
     if (w->last.stage && w->last.iteration + 100 != w->next_log)
         log_last(w);
@@ -321,10 +321,10 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
                              const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error)
 {
     if (!adcgs_enc_team_follows(&w->team))
-        adcgs_progress_show(&w->progress, "start     %u view%s: finding where things are ...", scene->n_views[ADCGS_SPLIT_TRAIN],
+        adcgs_progress_show(&w->progress, "start   %u view%s: matching ...", scene->n_views[ADCGS_SPLIT_TRAIN],
                             adcgs_s(scene->n_views[ADCGS_SPLIT_TRAIN]));
-    const int is_one_of_many = job->ranks && job->ranks->rank; /* the first rank says it for all */
-    const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* nobody asks what is live once more */
+    const int is_one_of_many = job->ranks && job->ranks->rank; /* the first rank reports for all */
+    const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* no messages in a live run */
     adcgs_train_config config = job->config;
     config.judges_poses = tells && !w->doubted; /* by the first part of a scene */
     ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &config, before, job->cpu, job->pool, error));
@@ -343,7 +343,7 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
     w->t->measure = measure;
     w->t->measure_user = w;
     w->t->picture_memory = job->o->memory;
-    if (job->ranks && !job->o->memory) /* those of a host share it */
+    if (job->ranks && !job->o->memory) /* the ranks of a host share it */
         w->t->picture_memory = adcgs_pictures_usual_memory() / (uint64_t)ADCGS_MAX(job->ranks->local_size, 1);
     w->t->loading = loading;
     w->t->loading_user = w;
@@ -368,7 +368,7 @@ void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_scene *scene, adcgs_progre
         job->config.scale = (side + ADCGS_SIDE_MOST - 1) / ADCGS_SIDE_MOST;
         if (progress)
             adcgs_progress_clear(progress);
-        adcgs_cli_note(job->cli, "%s: pictures of %d pixels are reduced to 1/%d of that; --scale 1 leaves them as they are",
+        adcgs_cli_note(job->cli, "%s: images of %d pixels are reduced to 1/%d of that; --scale 1 keeps their size",
                        scene->directory, side, job->config.scale);
     }
     scene->measured = job->config.scale;

@@ -37,7 +37,7 @@ adcgs_status adcgs_enc_cut(adcgs_enc_job *job, double seconds, adcgs_error *erro
     return ADCGS_OK;
 }
 
-/** The notes of a run that has ended, but for lambda. */
+/** The notes of a run that has ended, except lambda. */
 static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const adcgs_enc_job *job)
 {
     adcgs_trainer ended = { .config = job->config, .iteration = job->config.iterations };
@@ -45,7 +45,7 @@ static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const a
     adcgs_enc_take_notes(n, &ended, (const char *)w->changes.data);
 }
 
-/** What the part is learnt from; with a plan that has to be of it, too. */
+/** Loads the model that the part is trained from; with a plan, that part must belong to the plan, too. */
 static adcgs_status load_before(adcgs_model *before, const adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
 {
     if (!job->follows[w->segment])
@@ -56,7 +56,7 @@ static adcgs_status load_before(adcgs_model *before, const adcgs_enc_watcher *w,
                        adcgs_enc_part_model(before, w->base, w->segment - 1, job->cpu, job->pool, error);
 }
 
-/** Of which plan it is, and which model it went on with. */
+/** Adds notes on the part's plan and on the model that it continues. */
 static void add_plan_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const adcgs_enc_job *job)
 {
     if (!job->plan)

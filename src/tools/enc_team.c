@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Ranks of adcgs-enc that learn a segment together. */
+/** \file Ranks of adcgs-enc that train a segment together. */
 #include "config.h"
 
 #include "tools/enc_team.h"
@@ -14,21 +14,21 @@
 #include <time.h>
 
 /*
- * YIELDS: looks before a wait is a long one. NAP: nanoseconds between looks from then on; LONG_NAP: when there have been so many
- * NAPS, since who is waited for does something else.
+ * YIELDS: checks before a wait becomes long. NAP: nanoseconds between later checks. LONG_NAP: nanoseconds after NAPS checks,
+ * since the awaited rank is then busy with something else.
  */
 enum { YIELDS = 100, NAP = 50000, NAPS = 1000, LONG_NAP = 1000000 };
-/* Seconds since an interrupt: before whoever is waited for is named, and before it is taken for gone. */
+/* Seconds after an interrupt: until the awaited rank is named, and until it counts as gone. */
 static const double NAMED_AFTER = 0.3, GONE_AFTER = 30;
 
-/* ---- Who is with whom ---- */
+/* ---- Formation of teams ---- */
 
 static int teams_of(const adcgs_ranks *r, uint32_t batch, uint32_t at_once)
 {
     return batch > 1 && at_once < (uint32_t)r->size ? (int)at_once : r->size;
 }
 
-/** The first rank of a team, of so many. */
+/** The first rank of a team; teams: their number. */
 static int first_of(const adcgs_ranks *r, int team, int teams)
 {
     return (int)((int64_t)r->size * team / teams);
@@ -64,7 +64,7 @@ int adcgs_enc_team_busy(const adcgs_ranks *r, uint32_t batch, uint32_t at_once)
 
 /* ---- Swaps ---- */
 
-/** What an interrupt means to a rank that waits: others may be gone, or be on their way to stop as this one is. */
+/** Handles an interrupt of a waiting rank: other ranks may be gone, or may be stopping like this one. */
 static adcgs_status doubt(adcgs_enc_team *t, int missing, adcgs_error *error)
 {
     const char *const host = t->hosts ? t->hosts[missing - t->first] : "another host";
@@ -120,7 +120,7 @@ adcgs_status adcgs_enc_team_meet(adcgs_enc_team *t, adcgs_cpu_level level, adcgs
         memcpy(t->hosts[i], cards[i].host, sizeof *t->hosts);
         if (cards[i].level != cards[0].level)
             return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "rank %d on %s has kernels of level %s, rank %d those of %s, which "
-                              "learn otherwise: give --cpu", t->first + i, cards[i].host,
+                                                            "train differently: give --cpu", t->first + i, cards[i].host,
                               adcgs_cpu_name((adcgs_cpu_level)cards[i].level), t->first,
                               adcgs_cpu_name((adcgs_cpu_level)cards[0].level));
     }

@@ -17,12 +17,12 @@ static int show(void *user, const char *without, uint32_t done, uint32_t most)
 
 static void tell(const adcgs_enc_job *job, const adcgs_trials *t)
 {
-    if (job->ranks && job->ranks->rank) /* the first rank notes it for all */
+    if (job->ranks && job->ranks->rank) /* the first rank reports for all */
         return;
     for (uint32_t i = 0; i < t->n; i++)
         if (t->of[i].dropped)
-            adcgs_cli_note(job->cli, "%s: without %s %u images that were held back have %.2f dB instead of %.2f in trials of %u "
-                           "iterations: it is turned off; --set trial_share=0 keeps it", job->scene->directory,
+            adcgs_cli_note(job->cli, "%s: without %s %u held-out images have %.2f dB instead of %.2f in trials of %u iterations: "
+                                     "it is turned off; --set trial_share=0 keeps it", job->scene->directory,
                            adcgs_mechanism_names[t->of[i].mechanism], t->views, t->of[i].without, t->of[i].with, t->iterations);
 }
 

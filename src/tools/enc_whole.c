@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Whether one segment serves a scene better than several. */
+/** \file Compares one segment for a scene with several. */
 #include "tools/enc_whole.h"
 
 #include "metric/evaluate.h"
@@ -10,18 +10,18 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define AS_GOOD 0.05 /* dB: less is not seen */
+#define AS_GOOD 0.05 /* dB; smaller differences are invisible */
 
-/** Whether to continue: the parts stay, and the same command with --resume joins them. */
+/** Ends at an interrupt: the parts stay, and the same command with --resume joins them. */
 static adcgs_status heed(void *user, const adcgs_view_score *score, adcgs_error *error)
 {
     const int *const heard = user;
     (void)score;
-    return adcgs_interrupts() == *heard ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "interrupted while the two were compared; "
-                                                                "the same command with --resume goes on");
+    return adcgs_interrupts() == *heard ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "interrupted during the comparison; "
+                                                                                     "continue it with --resume");
 }
 
-/** A stream, and how well it shows the training views. */
+/** Measures a stream's PSNR on the training views. */
 static adcgs_status measure(double *psnr, const adcgs_buffer *bytes, const adcgs_enc_job *job, adcgs_error *error)
 {
     adcgs_config config;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Whether a stream may have been made of a scene. What differs is worth a word:
- * figures would be right, and mean nothing.
+ * Checks whether a stream was made of a scene. A mismatch is worth a warning, since the figures would be correct but meaningless.
  */
 #include "config.h"
 
@@ -13,8 +12,8 @@
 
 #include <math.h>
 
-#define PLACE_WITHIN 1e-3 /* scene units, and elements of rotations: streams keep poses in binary32, scenes in decimal digits */
-#define LENS_WITHIN 0.02  /* of the focal length per width: pictures may have been reduced */
+#define PLACE_WITHIN 1e-3 /* scene units, and elements of rotations: streams store poses in binary32, scenes in decimal digits */
+#define LENS_WITHIN 0.02  /* of focal length per width: images may have been reduced */
 #define PSNR_OF_NOTHING 10.0
 
 static int is_same_place(const adcgs_camera *a, const adcgs_camera *b, double scale)
@@ -31,7 +30,7 @@ static int is_same_lens(const adcgs_camera *a, const adcgs_camera *b)
     return fabs(x - 1.0) <= LENS_WITHIN && fabs(y - 1.0) <= LENS_WITHIN;
 }
 
-/** 0: no view of the scene was taken from where the camera is; 1: one was, through another lens; 2: through the same. */
+/** Returns 0 if no view of the scene has the camera's pose, 1 if one has, with another lens, 2 if the lens is the same. */
 static int find_camera(const adcgs_camera *camera, const adcgs_scene *scene, double scale)
 {
     int found = 0;
@@ -52,14 +51,15 @@ static void match_cameras(const adcgs_match *m, const adcgs_info *info)
         if (adcgs_get_camera(m->decoder, i, &camera, NULL) == ADCGS_OK)
             n[find_camera(&camera, m->scene, info->scene_scale)]++;
     if (2 * n[0] > info->cameras)
-        adcgs_cli_note(m->cli, "%s: %d of its %d camera%s %s none of %s: was it made of another scene?", m->file, n[0],
+        adcgs_cli_note(m->cli, "%s: %d of its %d camera%s %s not in %s: check that it was made of this scene", m->file, n[0],
                        info->cameras, adcgs_s((uint64_t)info->cameras), n[0] == 1 ? "is" : "are", m->scene_name);
     else if (2 * n[1] > info->cameras)
-        adcgs_cli_note(m->cli, "%s: %d of its %d camera%s %s other lenses in %s: was it made of other pictures?", m->file, n[1],
+        adcgs_cli_note(m->cli, "%s: %d of its %d camera%s %s other lenses in %s: check that it was made of these "
+                               "images", m->file, n[1],
                        info->cameras, adcgs_s((uint64_t)info->cameras), n[1] == 1 ? "has" : "have", m->scene_name);
 }
 
-/** How many views of the split are of a time that the stream has not, give or take a frame. */
+/** Counts the views of the split outside the stream's time, with a tolerance of one frame. */
 static uint32_t count_outside(const adcgs_match *m, const adcgs_info *info)
 {
     const double frame = 1.0 / info->frame_rate;
@@ -78,8 +78,8 @@ adcgs_status adcgs_match_check(const adcgs_match *m, adcgs_error *error)
     const uint32_t outside = count_outside(m, &info);
     if (outside && outside == m->scene->n_views[m->split])
         return adcgs_fail(error, ADCGS_ERR_DATA,
-                          "%.80s lasts from %g to %g s, and no %s view of %.80s is of that time: "
-                          "another scene, or other --frames", m->file,
+                          "%.80s lasts from %g to %g s, and no %s view of %.80s lies in that time: give its scene, or its "
+                          "--frames", m->file,
                           info.time_start, info.time_end, adcgs_split_name(m->split), m->scene_name);
     return ADCGS_OK;
 }
@@ -91,11 +91,11 @@ void adcgs_match_say(const adcgs_match *m, const adcgs_evaluation *evaluation)
         return;
     const uint32_t outside = count_outside(m, &info);
     if (outside)
-        adcgs_cli_note(m->cli, "%s: lasts from %g to %g s, but %u of the %u %s views of %s are not of that time: other --frames?",
+        adcgs_cli_note(m->cli, "%s: lasts from %g to %g s, but %u of the %u %s views of %s lie outside that time: check --frames",
                        m->file, info.time_start, info.time_end, outside, m->scene->n_views[m->split],
                        adcgs_split_name(m->split), m->scene_name);
     match_cameras(m, &info);
     if (evaluation->psnr < PSNR_OF_NOTHING)
-        adcgs_cli_note(m->cli, "%s: its views are nothing like the pictures of %s (%.1f dB): was it made of another scene?",
+        adcgs_cli_note(m->cli, "%s: its views are nothing like the images of %s (%.1f dB): check that it was made of this scene",
                        m->file, m->scene_name, evaluation->psnr);
 }

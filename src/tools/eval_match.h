@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Whether a stream may have been made of a scene: cameras, times, pictures. */
+/** \file Checks whether a stream was made of a scene: cameras, times, images. */
 #ifndef ADCGS_TOOLS_EVAL_MATCH_H
 #define ADCGS_TOOLS_EVAL_MATCH_H
 
@@ -15,9 +15,9 @@ typedef struct adcgs_match {
     adcgs_split split;
 } adcgs_match;
 
-/** Before the evaluation: ADCGS_ERR_DATA if no view of the split is within the stream's time. */
+/** Before the evaluation: ADCGS_ERR_DATA if no view of the split lies within the stream's time. */
 adcgs_status adcgs_match_check(const adcgs_match *match, adcgs_error *error);
-/** After it: notes of what does not match. */
+/** After the evaluation: prints remarks on mismatches. */
 void adcgs_match_say(const adcgs_match *match, const adcgs_evaluation *evaluation);
 
 #endif

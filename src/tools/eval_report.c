@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What adcgs-eval says of the views. */
+/** \file The report of adcgs-eval on the views. */
 #include "config.h"
 
 #include "tools/eval_report.h"
@@ -14,8 +14,8 @@
 #define CROP ADCGS_EVAL_COLUMNS /* beyond all flags */
 
 /**
- * digits: of the text, -1: text does not show it. wanted: flags of which one must be set, or one of the two above. is_of_camera:
- * the views of a camera together have it, and single views only where more is known of them.
+ * digits: of the text; -1: not in the text. wanted: flags of which at least one must be set, or ALWAYS or CROP. is_of_camera: a
+ * value of all views of a camera together; single views have it only if more is known about them.
  */
 typedef struct column {
     const char *key, *label, *unit;
@@ -85,7 +85,7 @@ static void add_value(adcgs_eval_sum *sum, double value)
     sum->n++;
 }
 
-/** Rows may lack a value, but not of columns that are always there: not a number there stays visible in the mean. */
+/** Rows may lack a value, except in columns that are always present: NaN there stays visible in the mean. */
 static void add_row(adcgs_eval_sum *sums, const double *value)
 {
     for (int c = 0; c < ADCGS_EVAL_COLUMNS; c++)
@@ -93,7 +93,7 @@ static void add_row(adcgs_eval_sum *sums, const double *value)
             add_value(&sums[c], value[c]);
 }
 
-/** Not a number where no row has a value. */
+/** Means over the rows with a value; NaN if there are none. */
 static void find_means(const adcgs_eval_sum *sums, double *mean)
 {
     for (int c = 0; c < ADCGS_EVAL_COLUMNS; c++)
@@ -120,7 +120,7 @@ static void make_row(double *value, const adcgs_view_score *score, const adcgs_c
     }
 }
 
-/* ---- CSV (RFC 4180, but for lines that end with a newline alone) ---- */
+/* ---- CSV (RFC 4180, except that lines end with a newline alone) ---- */
 
 static void csv_heading(const adcgs_eval_report *r)
 {
@@ -131,7 +131,7 @@ static void csv_heading(const adcgs_eval_report *r)
     fputc('\n', r->table);
 }
 
-/** The rest of a row, in as many digits as JSON has. */
+/** The rest of a row, with as many digits as in JSON. */
 static void csv_values(const adcgs_eval_report *r, const double *value)
 {
     for (int c = 0; c < ADCGS_EVAL_COLUMNS; c++)
@@ -150,7 +150,7 @@ static void csv_view(const adcgs_eval_report *r, const adcgs_view_score *score, 
 
 /* ---- JSON ---- */
 
-/** of_camera: 1: also what only the views of a camera together give; views have it where it is known of them. */
+/** of_camera 1: includes values that only the views of a camera together give. Views include these if they are known. */
 static void json_values(adcgs_eval_report *r, const double *value, int of_camera)
 {
     for (int c = 0; c < ADCGS_EVAL_COLUMNS; c++)
@@ -221,7 +221,7 @@ static adcgs_status json_end(adcgs_eval_report *r, const double *mean, const adc
 
 /* ---- Text ---- */
 
-/** which: 0: of views, 1: of views together, 2: both. */
+/** which: 0: values of views, 1: of views together, 2: both. */
 static void text_values(const adcgs_eval_report *r, const double *value, int which)
 {
     for (int c = 0; c < ADCGS_EVAL_COLUMNS; c++) {
@@ -237,7 +237,7 @@ static void text_values(const adcgs_eval_report *r, const double *value, int whi
     printf("\n");
 }
 
-/** Nothing is asked for over time but what some view knows by itself. */
+/** True if the only requested measure over time is one that single views provide. */
 static int only_known(const adcgs_eval_report *r)
 {
     return (r->measure & ADCGS_MEASURE_TIME) == ADCGS_MEASURE_DYNAMIC && r->of_all[ADCGS_EVAL_DYNAMIC_SHARE].n;
@@ -260,7 +260,7 @@ static void text_end(const adcgs_eval_report *r, const double *mean, const adcgs
            e->frames_per_second);
 }
 
-/* ---- All of it ---- */
+/* ---- The whole report ---- */
 
 adcgs_status adcgs_eval_report_open(adcgs_eval_report *r, adcgs_error *error)
 {
@@ -283,7 +283,7 @@ void adcgs_eval_report_begin(adcgs_eval_report *r)
         csv_heading(r);
 }
 
-/** After the last view of a camera: its means, with what the views together gave. */
+/** After the last view of a camera: its means, with the values of its views together. */
 static adcgs_status report_camera(adcgs_eval_report *r, const adcgs_temporal_total *total, adcgs_error *error)
 {
     adcgs_eval_camera *grown = realloc(r->cameras, ((size_t)r->n_cameras + 1) * sizeof *grown);
@@ -296,7 +296,7 @@ static adcgs_status report_camera(adcgs_eval_report *r, const adcgs_temporal_tot
     *c = (adcgs_eval_camera){.camera = r->camera, .views = total->views};
     find_means(r->of_camera, c->value);
     for (int i = 0; i < 3; i++) {
-        if (!isnan(c->value[together[i]])) /* known of the views */
+        if (!isnan(c->value[together[i]])) /* views provide it */
             continue;
         c->value[together[i]] = values[i];
         if (!isnan(values[i]))

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What adcgs-eval says of the views: as text or JSON on standard output, and as CSV. One table of columns drives them. */
+/** \file
+ * The report of adcgs-eval on the views: text or JSON on standard output, and CSV. One table of columns drives all of them.
+ */
 #ifndef ADCGS_TOOLS_EVAL_REPORT_H
 #define ADCGS_TOOLS_EVAL_REPORT_H
 
@@ -8,7 +10,7 @@
 #include "io/json.h"
 #include "metric/crop.h"
 
-/** Values of a row; not a number where there is none. */
+/** Values of a row; NaN if there is none. */
 typedef enum adcgs_eval_column {
     ADCGS_EVAL_PSNR,
     ADCGS_EVAL_SSIM,
@@ -33,10 +35,10 @@ typedef struct adcgs_eval_sum {
     uint32_t n;
 } adcgs_eval_sum;
 
-/** A camera that stays where it is. */
+/** A static camera. */
 typedef struct adcgs_eval_camera {
     uint32_t camera, views;
-    double value[ADCGS_EVAL_COLUMNS]; /**< means over its views, and what only the views together give */
+    double value[ADCGS_EVAL_COLUMNS]; /**< means over its views, and values that only all its views together give */
 } adcgs_eval_camera;
 
 typedef struct adcgs_eval_report {
@@ -51,29 +53,32 @@ typedef struct adcgs_eval_report {
     int as_text;
     adcgs_json json;
     adcgs_atomic atomic;
-    FILE *table;                            /**< of the CSV; NULL: none */
+    FILE *table;                            /**< CSV output; NULL: none */
     adcgs_eval_sum of_camera[ADCGS_EVAL_COLUMNS], of_all[ADCGS_EVAL_COLUMNS];
-    uint32_t camera;                        /**< that of_camera is of */
+    uint32_t camera;                        /**< the camera of of_camera */
     adcgs_eval_camera *cameras;
     uint32_t n_cameras;
 } adcgs_eval_report;
 
-/** What --metrics takes: all, or names with commas between. 0, or -1 if text is neither. *measure: flags of metric/evaluate.h. */
+/**
+ * Parses the value of --metrics: all, or names with commas between. Returns 0, or -1 if text is neither. *measure: flags of
+ * metric/evaluate.h.
+ */
 int adcgs_eval_parse_metrics(const char *text, int *measure);
 /** For messages: "all, or some of psnr, ...". */
 #define ADCGS_EVAL_METRICS \
     "all, or a list of psnr, ssim, fitted-psnr, ms-ssim, dynamic-psnr, fitted-dynamic-psnr, static-variance and flicker"
 
-/** Open the CSV, before anything long begins. Wants csv and as_json. A CSV on standard output is there instead of the text. */
+/** Opens the CSV before anything long begins. Set csv and as_json before. A CSV on standard output replaces the text. */
 adcgs_status adcgs_eval_report_open(adcgs_eval_report *report, adcgs_error *error);
-/** Headings. */
+/** Writes headings. */
 void adcgs_eval_report_begin(adcgs_eval_report *report);
-/** A view; crop may be out of sight. With the last view of a fixed camera, also the camera. */
+/** Reports a view; crop may be out of sight. After the last view of a fixed camera, reports the camera, too. */
 adcgs_status adcgs_eval_report_view(adcgs_eval_report *report, const adcgs_view_score *score, const adcgs_crop *crop,
                                     adcgs_error *error);
-/** Means, and the end of what was written. */
+/** Writes the means and completes the output. */
 adcgs_status adcgs_eval_report_end(adcgs_eval_report *report, const adcgs_evaluation *evaluation, adcgs_error *error);
-/** Also after errors: a CSV that is not complete disappears. */
+/** Call it after errors, too: it removes an incomplete CSV. */
 void adcgs_eval_report_clear(adcgs_eval_report *report);
 
 #endif

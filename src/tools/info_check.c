@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Checking and repairing a stream. */
+/** \file Checks and repairs a stream. */
 #define _POSIX_C_SOURCE 200809L
 #define _FILE_OFFSET_BITS 64
 
@@ -29,10 +29,10 @@ static void print_usable(const char *path, const adcgs_stream *s, uint32_t fault
 {
     const int layers = adcgs_params_layers(&s->params);
     adcgs_text_show(stdout, path);
-    printf(": %u fault%s; %u segment%s can be used\n", faults, faults == 1 ? "" : "s", s->n_segments,
+    printf(": %u fault%s; %u segment%s usable\n", faults, faults == 1 ? "" : "s", s->n_segments,
            s->n_segments == 1 ? "" : "s");
     for (uint32_t i = 0; faults && i < s->n_segments; i++)
-        printf("  %g .. %g s, %d of %d layer%s whole, %d of %d tier%s\n", s->segments[i].time_start, s->segments[i].time_end,
+        printf("  %g .. %g s, %d of %d layer%s intact, %d of %d tier%s\n", s->segments[i].time_start, s->segments[i].time_end,
                s->segments[i].layers, layers, adcgs_s((uint64_t)layers), s->segments[i].finest + 1 - s->segments[i].absent,
                s->segments[i].finest + 1, s->segments[i].finest ? "s" : "");
 }
@@ -41,7 +41,7 @@ static adcgs_status write_repaired(adcgs_stream *s, const char *path, adcgs_erro
 {
     adcgs_buffer out;
     adcgs_buffer_init(&out);
-    s->level = 0; /* the lowest that fits */
+    s->level = 0; /* the lowest level that fits */
     adcgs_status status = adcgs_stream_write(s, &out, error);
     if (status == ADCGS_OK)
         status = adcgs_atomic_save(path, out.data, out.size, error);
@@ -49,7 +49,7 @@ static adcgs_status write_repaired(adcgs_stream *s, const char *path, adcgs_erro
     return status;
 }
 
-/** What of a stream can be used, and to a file with it. */
+/** Finds the usable parts of a stream and writes them to a file. */
 static adcgs_status check(adcgs_read_at_fn read, void *user, uint64_t size, const char *path, const char *repaired,
                           uint32_t *faults, adcgs_error *error)
 {
@@ -74,7 +74,7 @@ static int64_t read_data(void *user, uint64_t offset, void *buffer, size_t bytes
     return (int64_t)bytes;
 }
 
-/** A damaged stream is looked at again and again: what a URL names is fetched once. */
+/** Loads a URL's stream once, since a damaged stream is read several times. */
 static adcgs_status check_url(const char *url, const char *repaired, uint32_t *faults, adcgs_error *error)
 {
     uint8_t *data;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Cutting a stream. */
+/** \file Reduces a stream. */
 #include "tools/info_cut.h"
 
 #include "io/atomic.h"
 
-/** The segment that has the most tiers to lose, the last of several; NULL if none has any. */
+/** Returns the segment with the most tiers to drop, the last of several; NULL if there is none. */
 static adcgs_model *next_to_cut(adcgs_stream *s)
 {
     adcgs_model *found = NULL;
@@ -34,13 +34,14 @@ static adcgs_status fit(adcgs_stream *s, uint64_t bytes, adcgs_buffer *out, adcg
 {
     for (;;) {
         out->size = 0;
-        s->level = 0; /* the lowest that fits */
+        s->level = 0; /* the lowest level that fits */
         ADCGS_TRY(adcgs_stream_write(s, out, error));
         adcgs_model *m = out->size > bytes ? next_to_cut(s) : NULL;
         if (out->size <= bytes)
             return ADCGS_OK;
         if (!m)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "--bytes %llu: without its finer tiers the stream has %zu",
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "--bytes %llu: the stream has %zu bytes without its finer tiers: give a "
+                                                      "larger --bytes",
                               (unsigned long long)bytes, out->size);
         ADCGS_TRY(drop_tier(m, error));
     }

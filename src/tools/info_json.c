@@ -95,7 +95,7 @@ static void json_extras(adcgs_json *j, const adcgs_info_report *r)
         adcgs_json_close(j);
     }
     adcgs_json_close(j);
-    adcgs_json_open(j, "metadata", '['); /* keys may come more than once */
+    adcgs_json_open(j, "metadata", '['); /* keys may repeat */
     for (uint32_t i = 0; i < r->stream.n_meta; i++) {
         adcgs_json_open(j, NULL, '{');
         adcgs_json_string(j, "key", r->stream.meta[i].key);

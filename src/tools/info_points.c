@@ -32,7 +32,7 @@ static uint8_t to_byte(double value)
     return (uint8_t)((value > 0.0 ? value < 1.0 ? value : 1.0 : 0.0) * 255.0 + 0.5);
 }
 
-/** Anchors that show nothing stay grey. */
+/** Invisible anchors stay grey. */
 static void colour(adcgs_points *out, const adcgs_model *m, const adcgs_primitives *p)
 {
     for (uint32_t i = 0; i < m->n; i++) {

@@ -7,9 +7,9 @@
 #include "stream/stream.h"
 
 /**
- * The anchors of the segment that plays at the middle of the stream, in the stream's order: positions in world units, less the
- * offset of a scene that is far from the origin (io/offset.h), where they are before anything moves; colours at that time, the
- * mean over an anchor's Gaussians, each weighed by its opacity, and mid-grey where there is none to be seen.
+ * Returns the anchors of the segment at the middle of the stream, in the stream's order. Positions are in world units, before any
+ * motion, less the offset of a scene far from the origin (io/offset.h). Colours are those at that time: the mean over an anchor's
+ * Gaussians, weighted by opacity, or mid-grey if none is visible.
  */
 adcgs_status adcgs_info_points(adcgs_points *out, double offset[3], const adcgs_stream *stream, const char *path,
                                adcgs_error *error);

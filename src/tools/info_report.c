@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What both reports of adcgs-info say. */
+/** \file Data shared by both reports of adcgs-info. */
 #include "tools/info_report.h"
 
 #include "base/digest.h"

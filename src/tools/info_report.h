@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What adcgs-info has found in a stream, and its report as JSON. */
+/** \file The data of adcgs-info on a stream, and its report as JSON. */
 #ifndef ADCGS_TOOLS_INFO_REPORT_H
 #define ADCGS_TOOLS_INFO_REPORT_H
 
 #include "stream/stream.h"
 
-/** A chunk as the elements of its header tell. */
+/** A chunk, from the elements of its header. */
 typedef struct adcgs_info_chunk {
     char type[5];
     uint64_t offset;
@@ -17,8 +17,8 @@ typedef struct adcgs_info_report {
     adcgs_info info;
     adcgs_info_chunk *chunks;
     size_t n_chunks, capacity;
-    int trace;  /**< print elements as they come */
-    int failed; /**< no memory for a chunk */
+    int trace;  /**< print elements as they arrive */
+    int failed; /**< allocation failure for a chunk */
 } adcgs_info_report;
 
 /** One line of the table of components. */
@@ -31,13 +31,16 @@ typedef struct adcgs_info_component {
 
 void adcgs_info_list_components(const adcgs_bytes *bytes, adcgs_info_component out[ADCGS_INFO_COMPONENTS]);
 uint32_t adcgs_info_count_gaussians(const adcgs_model *model);
-/** What a predicted segment has of the one before: anchors as they were, anchors with differences. Nothing of others. */
+/**
+ * Counts the anchors that a predicted segment takes from the previous one: unchanged anchors, and anchors with differences. Zero
+ * for other segments.
+ */
 adcgs_status adcgs_info_kept(const adcgs_info_report *report, uint32_t segment, uint32_t *same, uint32_t *refined,
                              adcgs_error *error);
-/** The digest of a segment's model in hexadecimal digits. */
+/** Writes the digest of a segment's model in hexadecimal digits. */
 void adcgs_info_digest(const adcgs_info_report *report, uint32_t segment, char text[33]);
 
-/** One JSON object on standard output. ADCGS_ERR_UNSUPPORTED in a build without jansson, which is one without the encoder. */
+/** Prints one JSON object to standard output. ADCGS_ERR_UNSUPPORTED in a build without jansson, that is, without the encoder. */
 adcgs_status adcgs_info_print_json(const adcgs_info_report *report, adcgs_error *error);
 
 #endif

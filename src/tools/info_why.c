@@ -14,7 +14,7 @@ static const char *find_meta(const adcgs_stream *stream, const char *key)
     return NULL;
 }
 
-/** The number that follows "name=" in a list of such; 0 if there is none. */
+/** The number after "name=" in the list; 0 if there is none. */
 static double find_number(const char *list, const char *name)
 {
     const size_t length = strlen(name);
@@ -38,7 +38,7 @@ static void print_bytes(const adcgs_info_report *r)
     const uint64_t features = b->layer[0] + b->layer[1] + b->layer[2] + b->layer[3] + b->layer[4];
     const uint32_t moving = r->stream.params.time_rows ? i->anchors - i->static_anchors : 0;
     print_share("features", features, b->total);
-    printf("  of %u anchors, %u of which move, with %u primitives, %.1f of at most %d each\n", i->anchors,
+    printf("  of %u anchors (%u moving), with %u primitives, %.1f of at most %d each\n", i->anchors,
            moving, i->gaussians, (double)i->gaussians / (double)i->anchors, i->k);
     print_share("positions", b->geometry, b->total);
     printf("  %.1f bits an anchor\n", 8.0 * (double)b->geometry / (double)i->anchors);
@@ -56,14 +56,14 @@ static void print_anchors(const char *list)
     const double refused = find_number(list, "refused"), details = find_number(list, "details");
     printf("anchors     %.0f allowed", find_number(list, "allowed"));
     if (details > 0)
-        printf(" for %.0f details of a picture", details);
-    printf("; %.0f to begin with", find_number(list, "began"));
+        printf(" for %.0f details of an image", details);
+    printf("; %.0f at the start", find_number(list, "began"));
     if (points > 0)
-        printf(", where %.0f points were known", points);
+        printf(", with %.0f known points", points);
     printf("; %.0f at most", most);
     if (refused > 0)
-        printf(", and beside %.0f primitives more would have grown", refused);
-    printf("; %.0f of which next to nothing was to be seen went\n", find_number(list, "idle"));
+        printf(", and the limit stopped growth next to %.0f primitives", refused);
+    printf("; %.0f nearly invisible ones were removed\n", find_number(list, "idle"));
 }
 
 static void print_motion(const char *list)
@@ -71,9 +71,9 @@ static void print_motion(const char *list)
     const double still = find_number(list, "still"), moving = find_number(list, "moving");
     const double unchanging = find_number(list, "unchanging"), unmoved = find_number(list, "unmoved");
     if (still > 0 && moving > 0)
-        printf("motion      makes the pictures' loss %.4g instead of %.4g\n", moving, still);
+        printf("motion    image loss %.4g with motion, %.4g without\n", moving, still);
     if (unchanging > 0 || unmoved > 0)
-        printf("static      %.0f anchors became since pictures do not change there, %.0f since nobody could see them move\n",
+        printf("static    %.0f anchors since the images do not change there, %.0f since their motion is invisible\n",
                unchanging, unmoved);
 }
 
@@ -82,10 +82,10 @@ static void print_reasons(const char *list)
     const double unseen = find_number(list, "unseen"), faint = find_number(list, "faint");
     print_anchors(list);
     if (unseen > 0 || faint > 0)
-        printf("primitives  %.0f that covered next to nothing went, and %.0f faint ones\n", unseen, faint);
+        printf("primitives  %.0f that covered almost nothing were removed, and %.0f faint ones\n", unseen, faint);
     const double units = find_number(list, "units");
     if (units > 0)
-        printf("networks    %.0f hidden units that did not pay for their bits went\n", units);
+        printf("networks  %.0f hidden units that did not justify their bits were removed\n", units);
     print_motion(list);
 }
 
@@ -108,11 +108,11 @@ void adcgs_info_why(const adcgs_info_report *r, const char *name)
     print_bytes(r);
     putchar('\n');
     if (list && r->info.segments > 1)
-        printf("Of the first segment:\n");
+        printf("First segment:\n");
     if (list)
         print_reasons(list);
     else
-        printf("Why that is so its encoder does not say.\n");
+        printf("The encoder stored no reasons.\n");
     for (size_t i = 0; i < ADCGS_COUNTOF(settings); i++)
         print_setting(&r->stream, settings[i]);
 }

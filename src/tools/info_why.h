@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-info --why: why a stream has as many bytes as it has. */
+/** \file adcgs-info --why: explains the size of a stream. */
 #ifndef ADCGS_TOOLS_INFO_WHY_H
 #define ADCGS_TOOLS_INFO_WHY_H
 
 #include "tools/info_report.h"
 
 /**
- * On standard output: what the bytes are spent on, and what the encoder says of how it came to that in the stream's metadata
- * ("decisions": see train/decisions.h; of the first segment). What others have written there is not believed further than it is
- * numbers.
+ * Prints the distribution of the bytes to standard output, and the encoder's decisions from the stream's metadata ("decisions":
+ * see train/decisions.h; of the first segment). Metadata of other writers counts only as far as it consists of numbers.
  */
 void adcgs_info_why(const adcgs_info_report *report, const char *name);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures of one size in columns and rows. */
+/** \file Images of one size in columns and rows. */
 #include "config.h"
 
 #include "tools/mosaic.h"
@@ -24,7 +24,7 @@ void adcgs_mosaic_clear(adcgs_mosaic *mosaic)
     *mosaic = (adcgs_mosaic){0};
 }
 
-/** A line of a picture in the mosaic. */
+/** A line of an image in the mosaic. */
 static float *line_of(const adcgs_mosaic *m, int column, int row, int y)
 {
     const size_t line = (size_t)(row * (m->height + ADCGS_MOSAIC_GAP) + y), at = (size_t)(column * (m->width + ADCGS_MOSAIC_GAP));

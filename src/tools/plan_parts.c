@@ -27,7 +27,7 @@ adcgs_status adcgs_plan_check_version(const adcgs_plan *plan, const char *path, 
 {
     if (!strcmp(plan->encoder, "adcgs-enc " PACKAGE_VERSION))
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: by %s, but this is adcgs-enc %s, which may learn otherwise", path,
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: by %s, but this is adcgs-enc %s, which may train differently", path,
                       plan->encoder, PACKAGE_VERSION);
 }
 
@@ -43,10 +43,10 @@ static const char *note_of(const adcgs_stream *s, const char *key)
 
 static int is_same_time(double a, double b, const adcgs_plan *plan)
 {
-    return fabs(a - b) * plan->timebase_den < 0.5 * plan->timebase_num; /* to a tick */
+    return fabs(a - b) * plan->timebase_den < 0.5 * plan->timebase_num; /* within half a tick */
 }
 
-/** What is not the plan's; NULL: nothing. */
+/** Names a value that differs from the plan's; NULL: none. */
 static const char *difference(const adcgs_stream *one, const adcgs_plan *plan, uint32_t part)
 {
     if (one->n_segments != 1)
@@ -59,18 +59,18 @@ static const char *difference(const adcgs_stream *one, const adcgs_plan *plan, u
         !is_same_time(one->segments[0].reach, plan->cuts.reach[part], plan))
         return "time";
     const int follows = *note_of(one, ADCGS_NOTE_FOLLOWS) != 0;
-    return follows != plan->segments[part].follows ? "place behind another" : NULL;
+    return follows != plan->segments[part].follows ? "predecessor" : NULL;
 }
 
 static adcgs_status check(const adcgs_stream *one, const adcgs_plan *plan, uint32_t part, const char *name, adcgs_error *error)
 {
     const char *const by = note_of(one, "encoder"), *const of = note_of(one, ADCGS_NOTE_PLAN);
     if (!*of)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: a stream, but no part of a plan", name);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: a stream, but not a part of a plan", name);
     if (strcmp(by, plan->encoder))
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: by %.64s, but the plan is by %s", name, by, plan->encoder);
     if (strcmp(of, plan->digest))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: of another plan", name);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: belongs to another plan", name);
     const char *const what = difference(one, plan, part);
     return what ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: its %s is not that of segment %u of the plan", name, what, part + 1) :
                   ADCGS_OK;
@@ -90,13 +90,13 @@ adcgs_status adcgs_plan_part_load(adcgs_stream *one, const adcgs_plan *plan, con
     return status;
 }
 
-/** The same for one that has to be there. */
+/** Reads a part that has to be present. */
 static adcgs_status need_part(adcgs_stream *one, const adcgs_plan *plan, const char *base, uint32_t part, adcgs_cpu_level cpu,
                               adcgs_pool *pool, adcgs_error *error)
 {
     int found;
     ADCGS_TRY(adcgs_plan_part_load(one, plan, base, part, cpu, pool, &found, error));
-    return found ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%s.%u.adcgs: missing: learn segment %u first", base, part + 1,
+    return found ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%s.%u.adcgs: missing: train segment %u first", base, part + 1,
                                          part + 1);
 }
 
@@ -114,9 +114,9 @@ adcgs_status adcgs_plan_part_model(adcgs_model *model, const adcgs_plan *plan, c
     return status;
 }
 
-/* ---- All of them ---- */
+/* ---- All parts ---- */
 
-/** All but segments and notes; what it had itself is moved. */
+/** Sets everything except segments and notes. Values that the source owns are moved. */
 static adcgs_status begin(adcgs_stream *to, adcgs_stream *from, uint32_t segments, adcgs_error *error)
 {
     to->level = 0;
@@ -139,7 +139,7 @@ static adcgs_status begin(adcgs_stream *to, adcgs_stream *from, uint32_t segment
     return to->segments ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
-/** Those of the last part are the stream's, but for what says of which plan it is. They come first. */
+/** Takes the notes of the last part, except the trailing ones that identify its plan. */
 static void take_notes(adcgs_stream *to, adcgs_stream *from)
 {
     to->meta = from->meta;
@@ -154,14 +154,14 @@ static void take_notes(adcgs_stream *to, adcgs_stream *from)
     }
 }
 
-/** digest: of the model before it, and then of its own. */
+/** Adds a part. digest: of the previous model before the call, and of this part's model afterwards. */
 static adcgs_status add_part(adcgs_stream *stream, adcgs_stream *one, const adcgs_plan *plan, uint32_t part, const char *base,
                              uint8_t digest[16], adcgs_error *error)
 {
     char before[33];
     adcgs_md5_hex(digest, before);
     if (plan->segments[part].follows && strcmp(before, note_of(one, ADCGS_NOTE_FOLLOWS)))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s.%u.adcgs: was learnt from another %s.%u.adcgs: learn it again", base,
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s.%u.adcgs: was trained from another %s.%u.adcgs: train it again", base,
                           part + 1, base, part);
     adcgs_model_digest(&one->segments[0], digest);
     if (!part)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Putting a scene into the page for browsers: where its marks are, as base64. */
+/** \file Puts a scene into the page for browsers, at the page's marks, as base64. */
 #include "config.h"
 
 #include "tools/share_page.h"
@@ -11,12 +11,12 @@ adcgs_status adcgs_share_check_page(const uint8_t *page, size_t bytes, const cha
     const char *text = (const char *)page;
     const char *title = strstr(text, title_mark), *scene = title ? strstr(title, scene_mark) : NULL;
     if (strlen(text) != bytes || !scene || strstr(scene + 1, scene_mark))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%.160s: no page of adcgs: expected one place for a title and one for a scene",
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%.160s: not an adcgs page: expected one place for a title and one for a scene",
                           path);
     return ADCGS_OK;
 }
 
-/** Text between tags or within quotes; control characters would be no text. */
+/** Writes text between tags or within quotes, with ? for control characters. */
 static void write_text(FILE *file, const char *text)
 {
     for (; *text; text++)
@@ -29,7 +29,7 @@ static void write_text(FILE *file, const char *text)
         }
 }
 
-/** Lines of 76 letters (RFC 2045). */
+/** Writes lines of 76 letters (RFC 2045). */
 static void write_base64(FILE *file, const uint8_t *data, size_t bytes)
 {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A sweep on many machines: its list, one run of it, what is there of it. */
+/** \file A sweep on many machines: the list, a single run, and collecting the results. */
 #include "config.h"
 
 #include "tools/sweep_many.h"
@@ -13,12 +13,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define WORDS "command.txt" /* what the folder is a sweep of: a word a line */
+#define WORDS "command.txt" /* the sweep's command line, one word a line */
 #define WORDS_MAX 100000
-#define ALL "sweep"     /* the name of the claim of all runs */
-#define TABLES "tables" /* and of what is written of them */
+#define ALL "sweep"     /* name of the claim on all runs */
+#define TABLES "tables" /* name of the claim on the tables */
 
-/* ---- Who is at what ---- */
+/* ---- Claims ---- */
 
 adcgs_status adcgs_sweep_make_folder(const adcgs_sweep *sweep, adcgs_error *error)
 {
@@ -26,7 +26,7 @@ adcgs_status adcgs_sweep_make_folder(const adcgs_sweep *sweep, adcgs_error *erro
            adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", sweep->directory, strerror(errno));
 }
 
-/** The file that says who is at it. */
+/** Names the file of a claim. */
 static void name_claim(char path[ADCGS_SWEEP_PATH], const adcgs_sweep *sweep, const char *name)
 {
     snprintf(path, ADCGS_SWEEP_PATH, "%s/%s.running", sweep->directory, name);
@@ -46,7 +46,8 @@ static adcgs_status absent(const adcgs_sweep *sweep, const char *name, adcgs_err
     return adcgs_claim_absent(path, name, error);
 }
 
-/* Whoever comes says so first and looks afterwards, here and in a single run: of two at a time one at least sees the other. */
+/* Each process claims first and checks afterwards, here and in a single run. Of two processes at the same time, at least one
+   sees the other. */
 adcgs_status adcgs_sweep_claim_all(adcgs_sweep_claims *claims, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan,
                                    adcgs_error *error)
 {
@@ -64,7 +65,7 @@ void adcgs_sweep_unclaim(adcgs_sweep_claims *claims)
     adcgs_claim_drop(&claims->runs);
 }
 
-/* ---- What the folder is a sweep of ---- */
+/* ---- The stored command line ---- */
 
 static void keep_word(FILE *file, const char *before, const char *word, int *lines)
 {
@@ -148,7 +149,7 @@ static int find_run(const adcgs_sweep_plan *plan, const char *tag)
     return -1;
 }
 
-/** Leave nothing in the plan but the run, and what it begins with if that has been trained: it need not be. */
+/** Keeps only the run in the plan, and its beginning if that has been trained: it need not be. */
 static void keep_only(const adcgs_sweep *sweep, adcgs_sweep_plan *plan, int index)
 {
     adcgs_error ignored;
@@ -163,7 +164,7 @@ static void keep_only(const adcgs_sweep *sweep, adcgs_sweep_plan *plan, int inde
     plan->n_runs = 1 + begun;
 }
 
-/** Train and measure it, as one that others have to keep away from. */
+/** Trains and measures the run, with the claim held. */
 static int run_claimed(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan, const adcgs_claim *claim)
 {
     adcgs_error error;
@@ -194,9 +195,9 @@ int adcgs_sweep_run_one(const adcgs_cli *cli, const adcgs_sweep_request *request
     return code;
 }
 
-/* ---- What is there ---- */
+/* ---- Collecting ---- */
 
-/** Name a run that is not finished, and say how far it is. */
+/** Reports a run that is not finished, and its state. */
 static void name_missing(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs_sweep_run *run)
 {
     char path[ADCGS_SWEEP_PATH];
@@ -209,7 +210,7 @@ static void name_missing(const adcgs_cli *cli, const adcgs_sweep *sweep, const a
     if (access(path, F_OK))
         adcgs_cli_error(cli, ADCGS_OK, "%s: not begun", run->tag);
     else
-        adcgs_cli_error(cli, ADCGS_OK, "%s: begun, not finished, and nobody is at it; see %s", run->tag, path);
+        adcgs_cli_error(cli, ADCGS_OK, "%s: begun, not finished, and no process works on it; see %s", run->tag, path);
 }
 
 int adcgs_sweep_collect(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/**
- * \file
- * A sweep on many machines, which share its folder and nothing else: a command for each run, one of these runs, and what is there
- * put together. Who is at a run, or at the folder, says so by a file (io/claim.h), and others refuse.
+/** \file
+ * A sweep on many machines that share only its folder: prints a command for each run, executes one of these runs, and collects
+ * the results. Each process claims its run, or the folder, by a file (io/claim.h); others then refuse.
  */
 #ifndef ADCGS_TOOLS_SWEEP_MANY_H
 #define ADCGS_TOOLS_SWEEP_MANY_H
@@ -10,34 +9,37 @@
 #include "io/claim.h"
 #include "tools/sweep_options.h"
 
-/** Of a sweep by one process: that it runs, and that it writes the tables. */
+/** Claims of a sweep by one process: on all runs, and on the tables. */
 typedef struct adcgs_sweep_claims {
     adcgs_claim *runs, *tables;
 } adcgs_sweep_claims;
 
-/** The folder, if it is not there. */
+/** Creates the folder if it is missing. */
 adcgs_status adcgs_sweep_make_folder(const adcgs_sweep *sweep, adcgs_error *error);
-/** Say that all of the folder is ours; refused while anybody else is at it. adcgs_sweep_unclaim() either way. */
+/** Claims the whole folder; refused while another process uses it. Call adcgs_sweep_unclaim() in either case. */
 adcgs_status adcgs_sweep_claim_all(adcgs_sweep_claims *claims, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan,
                                    adcgs_error *error);
 void adcgs_sweep_unclaim(adcgs_sweep_claims *claims);
 
-/** Leave in the folder what it is a sweep of, for --collect. */
+/** Stores the sweep's command line in the folder, for --collect. */
 adcgs_status adcgs_sweep_keep_words(const adcgs_sweep_request *request, adcgs_error *error);
-/** A command line as it was left there. */
+/** A command line stored in a folder. */
 typedef struct adcgs_sweep_past {
     int argc;
     char *argv[2 * ADCGS_SWEEP_OPTIONS + 6];
-    uint8_t *text; /**< that they are parts of */
+    uint8_t *text; /**< memory of the words */
 } adcgs_sweep_past;
 adcgs_status adcgs_sweep_recall(adcgs_sweep_past *past, const char *folder, adcgs_error *error);
 void adcgs_sweep_forget(adcgs_sweep_past *past);
 
-/** Print the command of each run, by the name that this program was called. Returns an exit code, as do those that follow. */
+/**
+ * Prints the command of each run, under the name that this program was called by. Returns an exit code, like the next two
+ * functions.
+ */
 int adcgs_sweep_list(const adcgs_cli *cli, const adcgs_sweep_request *request, adcgs_sweep_plan *plan, const char *called);
-/** Run one, from where it is. The plan is good for nothing else then. */
+/** Executes one run, from its current state. The plan cannot be used afterwards. */
 int adcgs_sweep_run_one(const adcgs_cli *cli, const adcgs_sweep_request *request, adcgs_sweep_plan *plan);
-/** Tables, charts and page of the runs that are finished; 1 if some are not. */
+/** Writes tables, charts and the page of the finished runs; returns 1 if some are not finished. */
 int adcgs_sweep_collect(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What adcgs-sweep is asked for: its command line, and the same once more as words. */
+/** \file The command line of adcgs-sweep, parsed, and as words again. */
 #include "config.h"
 
 #include "tools/sweep_options.h"
@@ -13,7 +13,7 @@
 
 /* ---- Lists ---- */
 
-/** "a,b,c"; returns how many, or -1. */
+/** Parses "a,b,c"; returns the number of elements, or -1. */
 static int parse_list(const char *text, double min, double max, double out[ADCGS_SWEEP_LIST])
 {
     int n = 0;
@@ -38,7 +38,7 @@ static int compare_double(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** "all", "none" or some of the names, separated by commas; -1 if it is none of these. */
+/** Parses "all", "none" or some of the names, separated by commas; -1 for anything else. */
 static int parse_yardsticks(const char *text)
 {
     static const struct {
@@ -64,12 +64,12 @@ static int parse_yardsticks(const char *text)
     }
 }
 
-/** The lists as the user gave them; NULL: not given. */
+/** The lists as given by the user; NULL: not given. */
 typedef struct lists {
     const char *lambdas, *ks, *grid, *seeds, *yardsticks;
 } lists;
 
-/** What every run would refuse is refused before the first. */
+/** Checks settings that every run would refuse, before the first run. */
 static int check_settings(const adcgs_cli *cli, const adcgs_sweep *sweep)
 {
     adcgs_error error;
@@ -82,7 +82,7 @@ static int check_settings(const adcgs_cli *cli, const adcgs_sweep *sweep)
     return status == ADCGS_OK ? -1 : adcgs_cli_fail(cli, &error);
 }
 
-/** The axes of --k and --grid, of which none may have an option that says something else. -1 to go on. */
+/** Parses the axes of --k and --grid; none may contradict an option. Returns -1 to continue. */
 static int parse_grid(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
 {
     const struct {
@@ -104,7 +104,7 @@ static int parse_grid(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
     return -1;
 }
 
-/** -1 to go on, else the exit code to leave with. */
+/** Returns -1 to continue, else the exit code. */
 static int parse_lists(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
 {
     const struct {
@@ -135,7 +135,7 @@ static int parse_lists(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
     return -1;
 }
 
-/** What no sweep can be made of. -1 to go on. */
+/** Checks that a sweep can be made of the options. Returns -1 to continue. */
 static int check_options(const adcgs_cli *cli, const adcgs_sweep_request *request, const lists *l, int has_jobs)
 {
     const adcgs_sweep *const sweep = &request->sweep;
@@ -145,15 +145,15 @@ static int check_options(const adcgs_cli *cli, const adcgs_sweep_request *reques
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: expected --lambda, too: there is no curve to compare",
                                sweep->against ? "--against" : "--add");
     if (request->list && request->run)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--list and --run: expected one of them");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--list and --run exclude each other");
     if (has_jobs && (request->list || request->run))
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--jobs: has no say with --%s", request->list ? "list" : "run");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--jobs has no effect with --%s", request->list ? "list" : "run");
     return -1;
 }
 
-/* ---- The same as words ---- */
+/* ---- The command line as words ---- */
 
-/** Options that say how a sweep is gone through, or where, rather than what it is. */
+/** True for options that define the execution or the place of a sweep, not its contents. */
 static int is_way(const char *name)
 {
     static const char *const ways[] = {"output", "jobs", "resume", "list", "run", "collect"};
@@ -163,7 +163,7 @@ static int is_way(const char *name)
     return 0;
 }
 
-/** Take each option whose value is not what it is without: none, or 0. */
+/** Takes each option whose value differs from its default, which is none or 0. */
 static void take_words(adcgs_sweep_words *w, const adcgs_option *options, size_t n)
 {
     for (size_t i = 0; i < n && w->n < ADCGS_SWEEP_OPTIONS; i++) {
@@ -186,7 +186,7 @@ static void take_words(adcgs_sweep_words *w, const adcgs_option *options, size_t
     }
 }
 
-/** A word for a shell, in quotes where it has something that a shell might obey. */
+/** Prints a word for a shell, quoted if a shell would interpret it. */
 static void print_word(FILE *file, const char *word)
 {
     static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
@@ -227,14 +227,14 @@ void adcgs_sweep_print_line(FILE *file, const char *program, const adcgs_sweep_r
 
 /* ---- Command line ---- */
 
-/** What is not yet what a sweep has of it. */
+/** Values that are parsed further before the sweep uses them. */
 typedef struct given {
     lists l;
     int dataset, has_dataset, has_jobs;
     const char *names[ADCGS_SETTING_NAMES + 1];
 } given;
 
-/** The table of options, which refers to all of these; returns how many there are. */
+/** Fills the table of options, with targets in these structs; returns the number of options. */
 static size_t list_options(adcgs_option out[ADCGS_SWEEP_OPTIONS], adcgs_sweep_request *request, given *g)
 {
     adcgs_sweep *const sweep = &request->sweep;
@@ -243,55 +243,57 @@ static size_t list_options(adcgs_option out[ADCGS_SWEEP_OPTIONS], adcgs_sweep_re
     const adcgs_option table[] = {
         {"output", 'o', ADCGS_OPTION_FILE, &sweep->directory, 0, 0, "DIR", "folder for all results (required)", NULL, NULL},
         {"lambda", 'l', ADCGS_OPTION_STRING, &g->l.lambdas, 0, 0, "A,B,C",
-         "values of the encoder's --lambda (required, but for\n--ablation)", NULL, NULL},
+         "values of the encoder's --lambda (required, except\nwith --ablation)", NULL, NULL},
         {"k", 0, ADCGS_OPTION_STRING, &g->l.ks, 0, 0, "A,B,C", "values of the encoder's --k (default: the preset's)", NULL, NULL},
         {"grid", 0, ADCGS_OPTION_STRING, &g->l.grid, 0, 0, "NAME=A,B,...",
-         "a curve for each choice of values of any settings of the\nencoder, and of preset, time-limit, segment, key, threads\n"
-         "and cpu; blanks between two such lists", g->names, NULL},
+         "a curve for each combination of values of any settings of\nthe encoder, and of preset, time-limit, segment, key,\n"
+         "threads and cpu; blanks between two such lists", g->names, NULL},
         {"seeds", 0, ADCGS_OPTION_STRING, &g->l.seeds, 0, 0, "A,B,C",
-         "train each point with these seeds; figures are means\n(default: the encoder's seed)", NULL, NULL},
+         "seeds of each point; figures are means over them (default:\nthe encoder's seed)", NULL, NULL},
         {"yardsticks", 0, ADCGS_OPTION_STRING, &g->l.yardsticks, 0, 0, "NAME,...",
-         "what to compare with: networks (of 32 bits; no run),\nuncompressed (two runs; by zstd and xz), gaussians (a\n"
-         "curve and a run); all (default) or none", NULL, NULL},
+         "baselines: networks (of 32 bits; no run), uncompressed (two\n"
+         "runs; by zstd and xz), gaussians (a curve and a run); all\n(default) or none", NULL, NULL},
         {"against", 0, ADCGS_OPTION_FILE, &sweep->against, 0, 0, "DIR,...",
-         "compare with earlier sweeps of the scene, of whatever\nversion or settings, by what they wrote", NULL, NULL},
+         "folders of earlier sweeps of the scene to compare with, of\nany version or settings", NULL, NULL},
         {"add", 0, ADCGS_OPTION_STRING, &sweep->tables, 0, 0, "NAME=FILE,...",
-         "draw other methods' tables beside, CSV with columns bytes\nand psnr, maybe ssim, dynamic_psnr, cpu_seconds,\n"
+         "tables of other methods to plot, CSV with columns bytes and\npsnr, and optionally ssim, dynamic_psnr, cpu_seconds,\n"
          "frames_per_second, source", NULL, NULL},
         {"ablation", 0, ADCGS_OPTION_FLAG, &sweep->ablation, 0, 0, NULL,
          "train the stages of the method one after another, and\n5, 10 and 15 primitives per anchor (nine runs)", NULL, NULL},
         {"preset", 'p', ADCGS_OPTION_STRING, &sweep->preset, 0, 0, "NAME", "preset of the encoder (default: its own)",
          adcgs_train_presets, NULL},
-        {"fixed", 0, ADCGS_OPTION_FLAG, &sweep->fixed, 0, 0, NULL, "sizes of the preset, as adcgs-enc --fixed", NULL, NULL},
+        {"fixed", 0, ADCGS_OPTION_FLAG, &sweep->fixed, 0, 0, NULL, "model sizes of the preset, as adcgs-enc --fixed", NULL, NULL},
         {"set", 0, ADCGS_OPTION_STRING, &sweep->set, 0, 0, "NAME=VALUE,...", "settings of the encoder", g->names, NULL},
         {"dataset", 0, ADCGS_OPTION_CHOICE, &g->dataset, 0, 0, "KIND", "kind of the scene, as for adcgs-enc", adcgs_dataset_names,
          &g->has_dataset},
         {"frames", 0, ADCGS_OPTION_STRING, &sweep->frames, 0, 0, "A:B:STEP", "frames of the scene, as for adcgs-enc", NULL, NULL},
         {"iterations", 'n', ADCGS_OPTION_INT, &sweep->iterations, iterations->min, iterations->max, "N",
-         "of training (default: the preset's)", NULL, NULL},
-        {"jobs", 'j', ADCGS_OPTION_INT, &request->jobs, 1, 64, "N", "encoders at a time (default: 1)", NULL,
+         "iterations of training (default: the preset's)", NULL, NULL},
+        {"jobs", 'j', ADCGS_OPTION_INT, &request->jobs, 1, 64, "N", "number of concurrent encoders (default: 1)", NULL,
          &g->has_jobs},
         {"threads", 't', ADCGS_OPTION_INT, &sweep->threads, 0, 256, "N", "threads of each encoder (default: one per CPU)", NULL,
          NULL},
         {"resume", 0, ADCGS_OPTION_FLAG, &sweep->resume, 0, 0, NULL,
-         "keep what an earlier sweep finished with the same\nsettings, go on with what it did not", NULL, NULL},
+         "keep the finished runs of an earlier sweep with the same\nsettings, and continue the others", NULL, NULL},
         {"list", 0, ADCGS_OPTION_FLAG, &request->list, 0, 0, NULL,
-         "run nothing: print a command for each run, one a line,\nfor as many machines as there are; with --resume those\n"
-         "that are not finished", NULL, NULL},
+         "run nothing: print a command for each run, one a line, for\nany number of machines; with --resume only those that are\n"
+         "not finished", NULL, NULL},
         {"run", 0, ADCGS_OPTION_STRING, &request->run, 0, 0, "NAME",
-         "nothing but this run; what was begun goes on, what is\nfinished stays", NULL, NULL},
+         "name of the only run to execute; a begun run continues, a\nfinished run stays", NULL, NULL},
         {"collect", 0, ADCGS_OPTION_FILE, &request->collect, 0, 0, "DIR",
-         "alone: make tables and charts of the runs of --list that\nare finished, name those that are not", NULL, NULL},
+         "make tables and charts of the finished runs of --list in\n"
+         "this folder, and name the others; no other options", NULL, NULL},
     };
     memcpy(out, table, sizeof table);
     return ADCGS_COUNTOF(table);
 }
 
-/** A folder to collect knows by itself what of. */
+/** Requires --collect alone, since its folder stores the rest. */
 static int check_alone(const adcgs_cli *cli, const adcgs_sweep_request *r, int operands)
 {
     return operands || r->words.n || r->sweep.directory || r->list || r->run || r->sweep.resume ?
-               adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--collect: expected nothing else; its folder knows the rest") : -1;
+               adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--collect excludes other options and operands: its folder stores "
+                                                     "them") : -1;
 }
 
 int adcgs_sweep_parse(adcgs_cli *cli, adcgs_sweep_request *request, int argc, char **argv)
@@ -304,7 +306,7 @@ int adcgs_sweep_parse(adcgs_cli *cli, adcgs_sweep_request *request, int argc, ch
     cli->n_options = list_options(options, request, &g);
     const int leave = adcgs_cli_parse(cli, argc, argv, &first);
     take_words(&request->words, options, cli->n_options);
-    cli->n_options = 0; /* the table ends with this function */
+    cli->n_options = 0; /* options is local to this function */
     if (leave >= 0)
         return leave;
     if (request->collect)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What adcgs-sweep is asked for: its command line, and the same once more as words. */
+/** \file The command line of adcgs-sweep, parsed, and as words again. */
 #ifndef ADCGS_TOOLS_SWEEP_OPTIONS_H
 #define ADCGS_TOOLS_SWEEP_OPTIONS_H
 
@@ -8,7 +8,7 @@
 
 #define ADCGS_SWEEP_OPTIONS 32
 
-/** What a sweep consists of, as options and their values: without what says how it is gone through. */
+/** The options that define a sweep, with their values, without those for its execution. */
 typedef struct adcgs_sweep_words {
     int n, n_text;
     struct {
@@ -20,13 +20,16 @@ typedef struct adcgs_sweep_words {
 typedef struct adcgs_sweep_request {
     adcgs_sweep sweep;
     int jobs, list, quiet;
-    const char *run, *collect; /**< the tag of the only run; the folder; NULL: neither */
+    const char *run, *collect; /**< tag of the only run; the folder; NULL: neither */
     adcgs_sweep_words words;
 } adcgs_sweep_request;
 
-/** -1 to go on, else the exit code to leave with. cli: the caller's, to be filled in; request: zeroed, it stays where it is. */
+/**
+ * Returns -1 to continue, else the exit code. cli belongs to the caller and is filled in. request is zeroed by the caller and
+ * must not move.
+ */
 int adcgs_sweep_parse(adcgs_cli *cli, adcgs_sweep_request *request, int argc, char **argv);
-/** The sweep as a line for a shell, without its end; run: of which that is the only one, or NULL. */
+/** Prints the sweep as a line for a shell, without a newline. run: the only run of that line, or NULL. */
 void adcgs_sweep_print_line(FILE *file, const char *program, const adcgs_sweep_request *request, const char *run);
 
 #endif

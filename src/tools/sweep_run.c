@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-sweep's runs, each a child process, some at a time, and what it says of them meanwhile. */
+/** \file The runs of adcgs-sweep, each in a child process, several at a time, and their progress. */
 #include "config.h"
 
 #include "tools/sweep_run.h"
@@ -23,7 +23,7 @@ static int start(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs_swe
     return child < 0 ? adcgs_cli_error(cli, ADCGS_ERR_IO, "cannot start a process: %s", strerror(errno)) : 0;
 }
 
-/** A run that can start now, NULL if there is none. Beginnings come when the first run that needs them would. */
+/** A run that can start now, NULL if there is none. A beginning comes when the first run that needs it would start. */
 static adcgs_sweep_run *next_run(adcgs_sweep_plan *plan)
 {
     for (int i = 0; i < plan->n_runs; i++) {
@@ -58,7 +58,7 @@ static int count_running(const adcgs_sweep_plan *plan)
     return n;
 }
 
-/** Wait until a child ends, and say meanwhile that they are at it. */
+/** Waits until a child ends, and shows progress. */
 static pid_t wait_for_child(const adcgs_cli *cli, const adcgs_sweep_plan *plan, int *state)
 {
     const struct timespec pause = {.tv_nsec = 50000000};
@@ -78,7 +78,7 @@ static pid_t wait_for_child(const adcgs_cli *cli, const adcgs_sweep_plan *plan, 
     return child;
 }
 
-/** Wait for one child and take its result; returns its exit code. */
+/** Waits for one child and takes its result; returns its exit code. */
 static int reap(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
 {
     int state = 0, i = 0;
@@ -115,7 +115,7 @@ int adcgs_sweep_run_all(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sw
     return adcgs_interrupted() ? ADCGS_MAX(worst, 3) : worst;
 }
 
-/* ---- What is there already ---- */
+/* ---- Finished runs ---- */
 
 int adcgs_sweep_take_finished(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
 {
@@ -124,13 +124,13 @@ int adcgs_sweep_take_finished(const adcgs_cli *cli, const adcgs_sweep *sweep, ad
         adcgs_error ignored;
         if (adcgs_sweep_load(sweep, &plan->run[i], &ignored) != ADCGS_OK)
             continue;
-        say(cli, &plan->run[i], " (from before)");
+        say(cli, &plan->run[i], " (from an earlier sweep)");
         n++;
     }
     return n;
 }
 
-/* ---- What is made of it ---- */
+/* ---- Results ---- */
 
 static int show_one(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
 {
@@ -165,7 +165,7 @@ static int write_all(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs
     adcgs_cli_note(cli, "wrote %s/index.html, sweep.csv, sweep.json%s%s%s%s", sweep->directory,
                    plan->n_stages ? ", ablation.csv" : "", plan->shown.n_portions ? ", portions.csv" : "",
                    plan->shown.n_views ? ", views.csv" : "",
-                   charts ? ", charts as .svg and .pdf" : plan->n_curves ? "; no chart (is gnuplot there?)" : "");
+                   charts ? ", charts as .svg and .pdf" : plan->n_curves ? "; no chart: install gnuplot" : "");
     return 0;
 }
 

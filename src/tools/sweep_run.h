@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How adcgs-sweep gets through its plan. */
+/** \file Executes the plan of adcgs-sweep. */
 #ifndef ADCGS_TOOLS_SWEEP_RUN_H
 #define ADCGS_TOOLS_SWEEP_RUN_H
 
 #include "cli/cli.h"
 #include "sweep/sweep.h"
 
-/** Take the results that an earlier sweep left, and say so; returns how many. */
+/** Takes the results of an earlier sweep and prints them; returns their number. */
 int adcgs_sweep_take_finished(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan);
-/** Run all that is not yet done, some at a time. Returns the worst exit code. */
+/** Executes all runs that are not done, several at a time. Returns the worst exit code. */
 int adcgs_sweep_run_all(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan, int jobs);
-/** Measure parts of the stream of the run that stands for all, unless they are known; write everything. Returns an exit code. */
+/** Measures parts of the shown run's stream, if they are unknown, and writes everything. Returns an exit code. */
 int adcgs_sweep_finish(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan);
 
 #endif

@@ -121,10 +121,10 @@ expect 2 "time 99: the stream lasts from 0 to" $dec "$s" --time 99 --md5
 expect 2 "time 9 and later: the stream lasts" $dec "$s" --time 9:10 --md5
 expect 2 "time -9: the stream lasts" $dec "$s" --time=-9 --md5
 expect 2 "time 99: the stream lasts" $dec "$s" --time 99 --splats "$dir/x.ply"
-expect 0 "[1-9][0-9]* of 61 frames show its first or last moment: it lasts from 0" $dec "$s" --time 0:2 --md5
+expect 0 "[1-9][0-9]* of 61 frames show its first or last frame: the stream lasts from 0" $dec "$s" --time 0:2 --md5
 [ "$(wc -l <"$dir/out")" -eq 61 ] || bad "frames behind the end"
 expect 0 "" $dec "$s" --md5
-! grep -q "last moment" "$dir/err" || bad "a word of times for a whole stream"
+! grep -q "last frame" "$dir/err" || bad "a word of times for a whole stream"
 
 # Frames of another shape: pixels keep theirs. With --fit all of the picture is in the middle, with --fill its middle is all.
 $dec "$s" --camera 0 --time 0 -o "$dir/whole.ppm" 2>/dev/null

@@ -113,8 +113,8 @@ enc_limited()
     (ulimit -f 64; exec ./adcgs-enc "$scene" -o "$dir/limited.adcgs" --preset draft --max-anchors 300 --iterations $n --threads 2 \
         --checkpoint "$dir/small" --checkpoint-every 0 --resume "$dir/late")
 }
-expect 0 "small: .*; the run goes on, and tries again every 0 s" enc_limited
-[ "$(grep -c "goes on" "$dir/err")" -eq 1 ] || bad "not said once"
+expect 0 "small: .*; the run continues, and tries again every 0 s" enc_limited
+[ "$(grep -c "the run continues" "$dir/err")" -eq 1 ] || bad "not said once"
 [ "$(cat "$dir/small")" = older ] || bad "a checkpoint was spoilt"
 same one limited "another stream where no checkpoint could be written"
 
@@ -169,8 +169,8 @@ same own shared "another stream from a shared beginning, with the preset's lambd
 differ own whole "lambda changes nothing"
 # shellcheck disable=SC2086
 expect 4 "other options" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --seed 2 --resume "$dir/begin"
-expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --without rate
-expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1,prune_units_at=1
+expect 2 "lambda has no effect" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --without rate
+expect 2 "lambda has no effect" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1,prune_units_at=1
 expect 2 "either -o FILE or --beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" -o "$dir/x.adcgs"
 
 # Stages left out; what a scene does not need is not in its stream.
@@ -233,10 +233,10 @@ grep '"iteration": *0,' "$dir/set.log" | grep -q '"anchors": *[1-9][0-9]\?,' || 
 grep -q '^  max_anchors  *1200 .*(1 to 1048576)$' "$dir/list" || { bad "another list of settings"; cat "$dir/list"; }
 
 # Why a stream is as large as it is goes with no other answer, and of whose encoder did not say it that is said.
-expect 2 "why goes with no other" ./adcgs-info --why --json "$dir/one.adcgs"
-expect 2 "why goes with no other" ./adcgs-info --why --bytes 20k -o "$dir/x.adcgs" "$dir/one.adcgs"
+expect 2 "why excludes other" ./adcgs-info --why --json "$dir/one.adcgs"
+expect 2 "why excludes other" ./adcgs-info --why --bytes 20k -o "$dir/x.adcgs" "$dir/one.adcgs"
 ./adcgs-info --why "${srcdir:-.}/conformance/vectors/good-deform-bodies.adcgs" >"$dir/why" || bad "--why of another encoder's stream"
-grep -q "encoder does not say" "$dir/why" || { bad "reasons that nobody gave"; cat "$dir/why"; }
+grep -q "encoder stored no reasons" "$dir/why" || { bad "reasons that nobody gave"; cat "$dir/why"; }
 
 # Moments, cameras and noise of a built-in scene: as many pictures, and in training's alone noise as strong as was asked for.
 expect 2 "moments" ./adcgs-demo-scene --scene tiny --moments 0 -o "$dir/none"
@@ -302,7 +302,7 @@ expect 4 "two.adcgs" ./adcgs-enc "$dir/two.adcgs" -o "$dir/x.adcgs"
 expect 3 "no/x.adcgs" ./adcgs-enc "$scene" -o "$dir/no/x.adcgs" --log "$dir/x.log"
 expect 3 "is a folder" ./adcgs-enc "$scene" -o "$dir" --log "$dir/x.log"
 if [ -w /dev/full ]; then
-    expect 0 "/dev/full: cannot write: No space left on device; the run went on" ./adcgs-enc "$scene" -o "$dir/unlogged.adcgs" $short --log /dev/full
+    expect 0 "/dev/full: cannot write: No space left on device; the run continued" ./adcgs-enc "$scene" -o "$dir/unlogged.adcgs" $short --log /dev/full
 fi
 expect 3 "not a regular file" ./adcgs-enc "$scene" -o /dev/null --log "$dir/x.log"
 expect 3 "no/check" $try --checkpoint "$dir/no/check" --log "$dir/x.log"

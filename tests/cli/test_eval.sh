@@ -28,8 +28,8 @@ enc="./adcgs-enc $dir/wide -o $dir/wide.adcgs --preset draft -n 10 --threads 2"
 width() { ./adcgs-eval "$dir/wide.adcgs" "$dir/wide" --images "$dir/wide/seen" "$@" >"$dir/out" 2>"$dir/err" || bad "adcgs-eval $*"
           od -An -tu1 -j 16 -N 4 "$dir"/wide/seen/0000-*.png | awk '{ print $3 * 256 + $4 }'; }
 ./adcgs-demo-scene --scene tiny --size 1601x12 --format ppm -o "$dir/wide" -q || bad "adcgs-demo-scene --size 1601x12"
-expect 0 'pictures of 1601 pixels are reduced to 1/2 of that; --scale 1 leaves' $enc --set stereo=0
-[ "$(width)" = 801 ] && grep -q 'measured on such' "$dir/err" || { bad "measured on other pictures"; cat "$dir/err"; }
+expect 0 'images of 1601 pixels are reduced to 1/2 of that; --scale 1 keeps' $enc --set stereo=0
+[ "$(width)" = 801 ] && grep -q 'measured on the same' "$dir/err" || { bad "measured on other pictures"; cat "$dir/err"; }
 [ "$(width --scale 1)" = 1601 ] && [ "$(width --scale 4)" = 401 ] || bad "--scale of adcgs-eval"
 ./adcgs-info "$dir/wide.adcgs" --why | grep -q 'settings .*scale=2' || bad "the stream does not tell that pictures were reduced"
 for own in "--set stereo=0 --scale 1" "--set stereo=0,scale=1"; do
@@ -43,20 +43,20 @@ expect 0 "" $eval "$s" "$dir/scene" --split train
 [ ! -s "$dir/err" ] || { bad "a word about the right scene"; cat "$dir/err"; }
 other() { rm -rf "$dir/other" && cp -R "$dir/scene" "$dir/other" && sed -i "$1" "$dir"/other/transforms_*.json; }
 other '/transform_matrix/s/\[\[\([^,]*, [^,]*, [^,]*\), [^]]*\]/[[\1, 0.1]/'
-expect 0 "2 of its 2 cameras are none of .*: was it made of another scene" $eval "$s" "$dir/other"
+expect 0 "2 of its 2 cameras are not in .*: check that it was made of this scene" $eval "$s" "$dir/other"
 other 's/"camera_angle_x": [0-9.]*/"camera_angle_x": 0.6/'
 expect 0 "2 of its 2 cameras have other lenses in" $eval "$s" "$dir/other"
 other s/x/x/
 awk '/"time"/ { sub(/"time": [0-9.]*/, sprintf("\"time\": %.3f", (n++) / 23)) } { print }' "$dir/scene/transforms_train.json" \
     >"$dir/other/transforms_train.json"
-expect 0 "lasts from 0 to .*, but [12] of the 3 test views of .* are not of that time" $eval "$s" "$dir/other"
+expect 0 "lasts from 0 to .*, but [12] of the 3 test views of .* lie outside that time" $eval "$s" "$dir/other"
 sed -i 's/"time": [0-9.]*/"time": 1/' "$dir/other/transforms_test.json"
-expect 4 "lasts from 0 to .*, and no test view of .* is of that time" $eval "$s" "$dir/other" --json
+expect 4 "lasts from 0 to .*, and no test view of .* lies in that time" $eval "$s" "$dir/other" --json
 other s/x/x/
 for picture in "$dir"/other/test/*.ppm; do
     { printf 'P6\n64 64\n255\n' && head -c 12288 /dev/zero; } >"$picture"
 done
-expect 0 "nothing like the pictures of" $eval "$s" "$dir/other"
+expect 0 "nothing like the images of" $eval "$s" "$dir/other"
 expect 0 "" $eval "$s" "$dir/other" --quiet
 [ ! -s "$dir/err" ] || { bad "--quiet is not quiet"; cat "$dir/err"; }
 

@@ -24,13 +24,13 @@ echo precious >"$dir/stop.adcgs"
 # shellcheck disable=SC2086
 interrupt INT "$dir/stop.log" '"iteration":100,' $run -o "$dir/stop.adcgs" --threads 2 --log "$dir/stop.log"
 grep -q 'a second interrupt makes a file' "$dir/stop.err" || { bad "no word of a second interrupt"; cat "$dir/stop.err"; }
-grep -q -- "--resume $state; or --finish it" "$dir/stop.err" || { bad "no word of --finish"; cat "$dir/stop.err"; }
+grep -q -- "--resume $state; or make a file of this state with --finish" "$dir/stop.err" || { bad "no word of --finish"; cat "$dir/stop.err"; }
 [ "$(cat "$dir/stop.adcgs")" = precious ] || bad "one interrupt touched the output"
 cp "$state" "$dir/kept"
 
 # The file is decoded, measured and told like any other; threads do not matter, and the run can still go on.
 # shellcheck disable=SC2086
-expect 0 'what there is after iteration [1-5][0-9]* of 600' $run -o "$dir/stop.adcgs" --threads 2 --finish "$state" --log "$dir/stop.log"
+expect 0 'the state after iteration [1-5][0-9]* of 600' $run -o "$dir/stop.adcgs" --threads 2 --finish "$state" --log "$dir/stop.log"
 grep -q 'decoded from the file, 3 test views: 2[0-9]' "$dir/err" || { bad "no report"; cat "$dir/err"; }
 grep -q '"stage":"decisions"' "$dir/stop.log" || bad "the log does not tell its end"
 shows "$dir/stop.adcgs" 20

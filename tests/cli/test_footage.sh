@@ -21,7 +21,7 @@ look()
         { bad "adcgs-enc of $1"; cat "$dir/$1.err"; }
 }
 # says NAME TEXT: once, and of the others nothing.
-doubts='off?\|has a picture between\|has no picture between\|doubled frames\|files mixed up\|times as \|clocks in step'
+doubts='check poses and lenses\|disagrees\|has an image between\|has no image between\|doubled frames\|mixed-up files\|times as \|check synchronisation'
 says()
 {
     look "$1"
@@ -58,7 +58,7 @@ for scene in demo cross80 pass table film-cross80; do
 done
 
 film twice --scene cross20 --cameras 4 --spoil twice=0.2
-says twice 'ppm: the picture at 0.[0-9]* s is the one before it once more, as are 17 others, 4 of this camera: doubled frames?'
+says twice 'ppm: the image at 0.[0-9]* s repeats the previous one, as do 17 others, 4 of this camera: check for doubled frames'
 # Frames that come twice where cameras take turns, and where one moves: 12 and 13, 30 and 31 are the same.
 for name in turns hand2; do
     film $name --scene "$([ $name = turns ] && echo cross80 || echo film-cross80)"
@@ -66,29 +66,29 @@ for name in turns hand2; do
         cp "$dir/$name/train/r_$frame.ppm" "$dir/$name/train/r_$(printf %03d $((10#$frame + 1))).ppm"
     done
 done
-says turns 'r_013.ppm: the picture at 0.[0-9]* s is that of another camera before it once more, as is another: are files mixed up?'
-says hand2 'r_013.ppm: the picture at 0.[0-9]* s is the one before it once more, as is another, 1 of this camera: doubled frames?'
+says turns 'r_013.ppm: the image at 0.[0-9]* s repeats the previous image of another camera, as does another: check for mixed-up files'
+says hand2 'r_013.ppm: the image at 0.[0-9]* s repeats the previous one, as does another, 1 of this camera: check for doubled frames'
 film drop --scene cross80 --spoil drop=0.3
-says drop 'r_004.ppm: its camera has no picture between 0.067 and 0.667 s, where 2 would be expected; there are gaps of another'
+says drop 'r_004.ppm: its camera has no image between 0.067 and 0.667 s, where 2 would be expected; gaps also in another'
 film inside --scene cross80 --spoil inside=0.2
-says inside 'inside: no camera has a picture between 0.[0-9]* and 0.[0-9]* s: what moves there is a guess'
+says inside 'inside: no camera has an image between 0.[0-9]* and 0.[0-9]* s: motion there is unknown'
 film hand --scene film-cross80 --spoil inside=0.3
-says hand 'its camera has no picture between .* s, where 26 would be expected$'
+says hand 'its camera has no image between .* s, where 26 would be expected$'
 film step --scene cross20 --spoil step=0.2
-says step 'the pictures of all cameras become 0.87 times as bright: does exposure, or the light, change?'
+says step 'the images of all cameras become 0.87 times as bright: check exposure and light'
 film tint --scene cross20 --spoil tint=0.4
-says tint 'the pictures of all cameras become 0.87 times as blue beside green: does white balance, or the light, change?'
+says tint 'the images of all cameras become 0.87 times as blue relative to green: check white balance and light'
 size=64x64
 film sync --scene clip --moments 60 --cameras 4
 silent sync
 late sync 1 2
-says sync 'train/r_001.ppm: what happens seems 2 frames later in its camera than in others: are clocks in step?'
+says sync 'train/r_001.ppm: its camera appears 2 frames later than others: check synchronisation'
 # Poses are off a little, all of them: pictures are matched for it.
 size=96x96 moments=2
 film poses --scene cross20
 silent poses
 film pose --scene cross20 --spoil pose=1
-says pose 'pose: what a camera shows lies 1.[0-9] pixels beside where others should have it: are poses, or lenses, off?'
+says pose 'pose: matched points of cameras lie 1.[0-9] pixels apart (median): check poses and lenses'
 # Steps that are taken out of the pictures are told once, as such; where there is none that is said, and nothing else is.
 moments=0
 evened()
@@ -96,22 +96,22 @@ evened()
     even=--set=even_light=1
     look "$1"
     [ "$(grep -c -- "$2" "$dir/$1.err")" -eq 1 ] || { bad "not once \"$2\" of $1"; cat "$dir/$1.err"; }
-    grep "does exposure\|does white" "$dir/$1.err" && bad "what was evened in $1 is a doubt"
+    grep "check exposure\|check white" "$dir/$1.err" && bad "what was evened in $1 is a doubt"
     return 0
 }
-evened step 'the pictures of all cameras become 0.87 times as bright: this is taken out of them'
-evened tint 'the pictures of all cameras become 0.87 times as blue beside green: this is taken out of them'
-evened sync 'sync: even_light: no camera.s light steps'
+evened step 'the images of all cameras become 0.87 times as bright: this and all other steps of light are evened out'
+evened tint 'the images of all cameras become 0.87 times as blue relative to green: this and all other steps of light are evened out'
+evened sync 'sync: even_light: no steps of light found'
 even=
 # Segments are cut of a scene whose light is even: it is told once, and the same.
 ./adcgs-enc "$dir/step" -o "$dir/cut.adcgs" --preset draft --set stereo=0,even_light=1 --segment 0.3 -n 10 --threads 2 2>"$dir/cut.err" ||
     { bad "segments of even light"; cat "$dir/cut.err"; }
-[ "$(grep -c 'this is taken out of them' "$dir/cut.err")" -eq 1 ] || { bad "not told once of segments"; cat "$dir/cut.err"; }
-grep "does exposure\|does white" "$dir/cut.err" && bad "what was evened before it was cut is a doubt"
+[ "$(grep -c 'steps of light are evened out' "$dir/cut.err")" -eq 1 ] || { bad "not told once of segments"; cat "$dir/cut.err"; }
+grep "check exposure\|check white" "$dir/cut.err" && bad "what was evened before it was cut is a doubt"
 # What is live has no pictures yet.
 code=0
 ./adcgs-enc --live "$dir/step" -o "$dir/live.adcgs" --set even_light=1 2>"$dir/live.err" || code=$?
-{ [ $code -eq 2 ] && grep -q 'live: even_light looks at all pictures' "$dir/live.err" && [ ! -e "$dir/live.adcgs" ]; } ||
+{ [ $code -eq 2 ] && grep -q 'live: even_light needs all images' "$dir/live.err" && [ ! -e "$dir/live.adcgs" ]; } ||
     { bad "even light of what is live: $code"; cat "$dir/live.err"; }
 quiet=-q
 look step

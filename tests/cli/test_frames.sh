@@ -30,7 +30,7 @@ expect 2 "x.png: linear light needs EXR" $dec "$s" -o "$dir/x.png" --linear --ti
 expect 2 "linear light needs EXR" $dec "$s" -o - --linear
 expect 2 "linear light needs EXR" $dec "$s" -o "$dir/x" -f null --linear
 expect 2 "need --output" $dec "$s" --linear --md5
-expect 2 "does nothing else" $dec "$s" --play --linear
+expect 2 "play excludes" $dec "$s" --play --linear
 expect 0 "frame of" $dec "$s" -o "$dir/b.ppm" --bits 16 --time 0
 head -c 15 "$dir/b.ppm" | grep -aq 65535 || bad "--bits 16 in PPM"
 expect 0 "frame of" $dec "$s" -o "$dir/b8.ppm" --bits 8 --time 0

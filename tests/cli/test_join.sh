@@ -26,7 +26,7 @@ is() { [ "$(states)" = "$1" ] || { bad "it lists: $(states)"; cat "$dir/err"; };
     expect 3 "is another plan" ./adcgs-enc "$scene" --plan "$plan" $short --cut 0.07 --seed 2
 }
 is "1 0 ready 2 1 waits 3 0 ready"
-expect 3 "plan.1.adcgs: missing: learn segment 1 first" ./adcgs-enc "$scene" --plan "$plan" --segment 2
+expect 3 "plan.1.adcgs: missing: train segment 1 first" ./adcgs-enc "$scene" --plan "$plan" --segment 2
 # What the fuzz target begins with is a plan, too: of all settings that there are.
 expect 0 "" ./adcgs-join "${srcdir:-.}/tests/fuzz/seeds/plan/three.json" --list
 
@@ -47,12 +47,12 @@ echo old >"$dir/join.adcgs"
 expect 3 "plan.json: 1 of 3 parts missing, .*: 2$" ./adcgs-join "$plan" -o "$dir/join.adcgs"
 [ "$(cat "$dir/join.adcgs")" = old ] || bad "what was there is lost"
 learn 2 --threads 3
-expect 0 "plan.2.adcgs: is there already" ./adcgs-enc "$scene" --plan "$plan" --segment 2
+expect 0 "plan.2.adcgs: present already" ./adcgs-enc "$scene" --plan "$plan" --segment 2
 expect 0 "3 segments" ./adcgs-join "$plan" -o "$dir/join.adcgs"
 cmp "$dir/one.adcgs" "$dir/join.adcgs" || bad "another stream than that of one process"
 [ "$(find "$dir" -name 'plan*' | sed 's|.*/||' | sort | xargs)" = "plan.1.adcgs plan.2.adcgs plan.3.adcgs plan.json" ] ||
     bad "left behind: $(find "$dir" -name 'plan*' | xargs)"
-expect 2 "is read" ./adcgs-join "$plan" -o "$dir/plan.2.adcgs"
+expect 2 "is an input" ./adcgs-join "$plan" -o "$dir/plan.2.adcgs"
 expect 2 "either -o" ./adcgs-join "$plan" -o "$dir/x" --list
 
 # What is wrong, and where; all but that stays as it was.
@@ -73,17 +73,17 @@ wrong 4 "stream: ends"
 cp "$dir/plan.3.adcgs" "$dir/plan.2.adcgs"
 wrong 4 "its time is not that of segment 2"
 cp "$dir/one.adcgs" "$dir/plan.2.adcgs"
-wrong 4 ".*no part of a plan"
+wrong 4 ".*not a part of a plan"
 digest=$(strings "$dir/good" | sed -n 's/^plan *//p')
 tests/cli/edit-stream "$dir/plan.2.adcgs" "$digest" "$(echo "$digest" | tr 0-9a-f 1-9a-f0)" || bad "edit-stream"
-wrong 4 "of another plan"
+wrong 4 "belongs to another plan"
 version=$(sed -n 's/.*"encoder": "adcgs-enc \(.*\)",/\1/p' "$plan")
 other=$(echo "$version" | tr 0-9 1-90)
 tests/cli/edit-stream "$dir/plan.2.adcgs" "adcgs-enc $version" "adcgs-enc $other" || bad "edit-stream"
 wrong 5 "by adcgs-enc $other, but the plan is by adcgs-enc $version"
 before=$(strings "$dir/good" | sed -n 's/^follows *//p')
 tests/cli/edit-stream "$dir/plan.2.adcgs" "$before" "$(echo "$before" | tr 0-9a-f 1-9a-f0)" || bad "edit-stream"
-expect 4 "plan.2.adcgs: was learnt from another .*plan.1.adcgs" ./adcgs-join "$plan" -o "$dir/join.adcgs"
+expect 4 "plan.2.adcgs: was trained from another .*plan.1.adcgs" ./adcgs-join "$plan" -o "$dir/join.adcgs"
 cp "$dir/good" "$dir/plan.2.adcgs"
 cmp "$dir/one.adcgs" "$dir/join.adcgs" || bad "what was there is lost"
 
@@ -114,9 +114,9 @@ expect 4 "not the scene of" ./adcgs-enc "$dir/own" --plan "$plan" --segment 3
 # Nothing from the command line changes what a plan says.
 for other in "--seed 1" "--set k=3" "--key 1" "--preset fast" "--fps 30" "--bf16" "-o $dir/x" "--resume $dir/x"; do
     # shellcheck disable=SC2086
-    expect 2 "the plan says" ./adcgs-enc "$scene" --plan "$plan" --segment 3 $other
+    expect 2 "the plan sets" ./adcgs-enc "$scene" --plan "$plan" --segment 3 $other
 done
-expect 2 "nothing that a plan has" ./adcgs-enc "$scene" --plan "$dir/x.json" --size 10k
+expect 2 "not a setting of plans" ./adcgs-enc "$scene" --plan "$dir/x.json" --size 10k
 expect 2 "number of a segment" ./adcgs-enc "$scene" --plan "$plan" --segment 0.5
 expect 2 "plan.json has 3" ./adcgs-enc "$scene" --plan "$plan" --segment 4
 expect 2 "give --plan" ./adcgs-enc "$scene" -o "$dir/x" --cut 1
@@ -149,7 +149,7 @@ if [ "${ADCGS_FULL:-}" = 1 ]; then
         ./adcgs-enc "$scene" --plan "$plan" $longer --cut 0.1 --quiet || bad "a plan"
     }
     interrupt TERM "$dir/log" '"iteration":100,' ./adcgs-enc "$scene" --plan "$plan" --segment 1 --log "$dir/log"
-    grep -q 'of segment 1 of 2; the same command goes on' "$dir/stop.err" || { bad "no word of it"; cat "$dir/stop.err"; }
+    grep -q 'of segment 1 of 2; continue with the same command' "$dir/stop.err" || { bad "no word of it"; cat "$dir/stop.err"; }
     is "1 0 begun 2 1 waits"
     learn 1
     learn 2

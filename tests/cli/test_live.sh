@@ -46,7 +46,7 @@ touch "$dir/wide/end"
 wide="--preset draft --max-anchors 50 -n 10 --set stereo=0 --segment 0.1"
 # shellcheck disable=SC2086
 {
-    expect 0 'pictures of 1601 pixels are reduced to 1/2 of that; --scale 1 leaves' ./adcgs-enc --live "$dir/wide" -o "$dir/wide.adcgs" $wide
+    expect 0 'images of 1601 pixels are reduced to 1/2 of that; --scale 1 keeps' ./adcgs-enc --live "$dir/wide" -o "$dir/wide.adcgs" $wide
     [ "$(grep -c 'are reduced' "$dir/err")" -eq 1 ] || { bad "said more than once"; cat "$dir/err"; }
     ./adcgs-info "$dir/wide.adcgs" --why | grep -q 'settings .*scale=2' || bad "the stream does not tell that pictures were reduced"
     ./adcgs-enc --live "$dir/wide" -o "$dir/wide.adcgs" $wide --scale 1 2>"$dir/err" || { bad "--scale 1"; cat "$dir/err"; }
@@ -111,7 +111,7 @@ cmp "$dir/piped" "$dir/followed" || bad "a file grows otherwise than a pipe"
 tail -c +3000 "$dir/piped" >"$dir/late"
 ./adcgs-dec - --camera "$dir/cameras.json" -t 0.15 --md5 <"$dir/late" >"$dir/out" 2>"$dir/err" ||
     { bad "joining"; cat "$dir/err"; }
-grep -q '^adcgs-dec: standard input: joined at segment 1, at 0.1 s$' "$dir/err" || { bad "no word of joining"; cat "$dir/err"; }
+grep -q '^adcgs-dec: standard input: tuned in at segment 1, at 0.1 s$' "$dir/err" || { bad "no word of joining"; cat "$dir/err"; }
 ./adcgs-dec "$dir/all.adcgs" --camera "$dir/cameras.json" -t 0.15 --md5 >"$dir/expected" 2>"$dir/err" || cat "$dir/err"
 cmp "$dir/out" "$dir/expected" || bad "who joins sees something else"
 expect 4 "not an adcgs stream: its .* bytes contain no header" sh -c "tail -c 3000 '$dir/piped' | ./adcgs-dec - --md5"
@@ -122,7 +122,7 @@ rm "$dir/gaps/c1/001.ppm" "$dir/gaps/c1/002.ppm"
 head -c 5000 "$dir/all/c4/001.ppm" >"$dir/gaps/c4/001.ppm"
 # shellcheck disable=SC2086
 ./adcgs-enc --live "$dir/gaps" -o "$dir/gaps.adcgs" $live 2>"$dir/err" || { bad "gaps"; cat "$dir/err"; }
-grep -q 'c1: no picture of 0.0666667 s' "$dir/err" && grep -q 'c4: no picture of 0.1 s' "$dir/err" &&
+grep -q 'c1: no image at 0.0666667 s' "$dir/err" && grep -q 'c4: no image at 0.1 s' "$dir/err" &&
     [ "$(wc -l <"$dir/err")" -eq 2 ] ||
     { bad "no word of what is missing"; cat "$dir/err"; }
 [ "$(spans "$dir/gaps.adcgs")" = "$(spans "$dir/all.adcgs")" ] || bad "other spans with gaps"
@@ -139,7 +139,7 @@ done
 wait_for 1 "$dir/silent.adcgs"
 touch "$dir/silent/end"
 ended 0
-grep -q 'c5: no picture of 0.1 s' "$dir/err" || { bad "no word of a camera that falls silent"; cat "$dir/err"; }
+grep -q 'c5: no image at 0.1 s' "$dir/err" || { bad "no word of a camera that falls silent"; cat "$dir/err"; }
 
 # SIGINT ends what comes; what has come is learnt, and the file is whole.
 scene_file "$dir/stop" images
@@ -183,7 +183,7 @@ grep -q '"most_iterations": 200' "$dir/out" && grep -q '"delay": 0.11' "$dir/out
     { bad "the delay has no effect"; cat "$dir/out"; }
 ./adcgs-enc --live "$dir/all" -o "$dir/late.adcgs" --preset draft --max-anchors 300 --iterations 60 --segment 0.1 --delay 100 \
     >"$dir/out" 2>"$dir/err" || { bad "--delay"; cat "$dir/err"; }
-grep -q '3 segments of 0.233333 s together' "$dir/err" && grep -q '100 s asked for' "$dir/err" ||
+grep -q '3 segments of 0.233333 s together' "$dir/err" && grep -q '100 s requested' "$dir/err" ||
     { bad "summary"; cat "$dir/err"; }
 
 # Y4M: files that grow, and pipes. An unknown rate is the stream's own.
@@ -258,9 +258,9 @@ fi
 # Wrong use.
 # shellcheck disable=SC2086
 {
-    expect 2 "give --live" ./adcgs-enc "$dir/all/scene.json" -o "$dir/x.adcgs" --delay 3
-    expect 2 "give more than that" ./adcgs-enc --live "$dir/all" -o "$dir/x.adcgs" --delay 2
-    expect 2 "both want standard output" ./adcgs-enc --live "$dir/all" -o - --json
+    expect 2 "delay needs --live" ./adcgs-enc "$dir/all/scene.json" -o "$dir/x.adcgs" --delay 3
+    expect 2 "give a longer delay" ./adcgs-enc --live "$dir/all" -o "$dir/x.adcgs" --delay 2
+    expect 2 "both write to standard output" ./adcgs-enc --live "$dir/all" -o - --json
     for other in "--size 100k" "--psnr 30" "--uncompressed $dir/raw" "--time-limit 9" "--frames 0:3" "--fps 3"; do
         expect 2 "live excludes" ./adcgs-enc --live "$dir/all" -o "$dir/x.adcgs" $other
     done

@@ -156,11 +156,11 @@ refused()
     cmp "$dir/before" "$dir/r.adcgs" || bad "what is refused changes the stream: $2"
 }
 head -c $((one / 2)) "$dir/piped" >"$dir/r.adcgs"
-refused 4 "no segment of it is whole" "$dir/all" "$dir/r.adcgs"
+refused 4 "no complete segment" "$dir/all" "$dir/r.adcgs"
 echo nothing >"$dir/r.adcgs"
-refused 4 "no segment of it is whole.*not an adcgs stream" "$dir/all" "$dir/r.adcgs"
+refused 4 "no complete segment.*not an adcgs stream" "$dir/all" "$dir/r.adcgs"
 head -c "$two" "$dir/piped" >"$dir/r.adcgs"
-refused 2 "expected the file that --output names" "$dir/all" "$dir/all.adcgs"
+refused 2 "expected the file of --output" "$dir/all" "$dir/all.adcgs"
 refused 2 "expected a file, which can be read back" "$dir/all" /dev/null
 scene_file "$dir/other" images
 put "$dir/other" 0 1 2 3 4 5 6 7
@@ -168,7 +168,7 @@ touch "$dir/other/end"
 sed 's/"fx": [0-9.]*/"fx": 70/' "$dir/other/scene.json" >"$dir/json" && mv "$dir/json" "$dir/other/scene.json"
 refused 2 "camera c0 is not one of the scene's" "$dir/other" "$dir/r.adcgs"
 cp "$dir/r.adcgs" "$dir/r.2.adcgs"
-refused 2 "another stream followed it, number 2" "$dir/all" "$dir/r.adcgs"
+refused 2 "another stream followed, number 2" "$dir/all" "$dir/r.adcgs"
 rm "$dir/r.2.adcgs" "$dir/r.adcgs"
 # shellcheck disable=SC2086
 expect 3 "r.adcgs: No such file" ./adcgs-enc $live "$dir/all" -o "$dir/r.adcgs" --resume "$dir/r.adcgs"

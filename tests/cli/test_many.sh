@@ -43,7 +43,7 @@ grep -qxF -e "$dir/adcgs-sweep --lambda 1,2,4 --grid k=5,10 --seeds 1,2 --ablati
 --run lambda-4-k-10-seed-2 $dir/scene" "$dir/list" || fail "another list: $(cat "$dir/list")"
 obey "$dir/list"
 calls $runs 0 "--resume\|--beginning"
-many 0 "lambda-1-k-5-seed-1: .* (from before)" --collect "$out"
+many 0 "lambda-1-k-5-seed-1: .* (from an earlier sweep)" --collect "$out"
 same "$dir/one" "$out"
 [ "$(ls "$out"/*.running* 2>/dev/null)" = "" ] || fail "who was at it is still said: $(ls "$out")"
 
@@ -80,7 +80,7 @@ calls 3 1 "--resume $out/lambda-666.partial"
 [ $? -eq 1 ] || fail "not all are there: $(cat "$dir/err")"
 line 'lambda-1: 64000 bytes' "$dir/err"
 line 'lambda-2: not begun' "$dir/err"
-line "lambda-666: begun, not finished, and nobody is at it; see $out/lambda-666.log" "$dir/err"
+line "lambda-666: begun, not finished, and no process works on it; see $out/lambda-666.log" "$dir/err"
 [ "$(wc -l <"$out/sweep.csv")" -eq 2 ] || fail "expected one point: $(cat "$out/sweep.csv")"
 sweep --lambda 1,2,666 --yardsticks none --list --resume
 [ "$(wc -l <"$dir/report")" -eq 2 ] || fail "expected what is missing: $(cat "$dir/report")"
@@ -161,15 +161,15 @@ grep -q node7 "$out/lambda-1.running" || fail "another's is gone"
 # What it cannot be asked for, and folders that are none.
 many 2 '--run lambda-3: expected one of the runs' "$dir/scene" -o "$out" -l 1 --run lambda-3
 many 2 'expected one of them' "$dir/scene" -o "$out" -l 1 --run lambda-1 --list
-many 2 '--jobs: has no say with --list' "$dir/scene" -o "$out" -l 1 -j 2 --list
-many 2 '--jobs: has no say with --run' "$dir/scene" -o "$out" -l 1 -j 1 --run lambda-1
+many 2 '--jobs has no effect with --list' "$dir/scene" -o "$out" -l 1 -j 2 --list
+many 2 '--jobs has no effect with --run' "$dir/scene" -o "$out" -l 1 -j 1 --run lambda-1
 mkdir "$dir/line
 break"
 many 2 'without line breaks' "$dir/line
 break" -o "$out" -l 1 --list
 for more in scene '-l 1' --list --resume "-o $dir"; do
     # shellcheck disable=SC2086
-    many 2 '--collect: expected nothing else' --collect "$out" $more
+    many 2 '--collect excludes other' --collect "$out" $more
 done
 many 3 'nowhere/command.txt' --collect "$dir/nowhere"
 printf -- '--lambda\n1' >"$out/command.txt"

@@ -119,7 +119,7 @@ fi
 long=$(printf 'n%.0s' $(seq 251))
 expect 0 "" ./adcgs-dec "$s" --time 0 -o "$dir/$long.png"
 [ -s "$dir/$long.png" ] || bad "a long name is not written"
-expect 2 "the name of the run's state is longer than 255 bytes" ./adcgs-enc "$dir/scene" -o "$dir/$long" --iterations 10
+expect 2 "the name of the run's state, with its suffix, is longer than 255 bytes" ./adcgs-enc "$dir/scene" -o "$dir/$long" --iterations 10
 
 # A pipe is waited for until somebody reads it; a signal ends that.
 mkfifo "$dir/pipe.png"

@@ -324,14 +324,14 @@ if [ -f .libs/adcgs_play.so ]; then
     mkdir "$dir/none"
     expect 5 "s.adcgs: the player needs SDL2: no adcgs_play.so in $dir/none" env ADCGS_MODULES="$dir/none" $dec "$dir/s.adcgs" --play
 fi
-expect 2 "does nothing else" $dec "$dir/s.adcgs" --play --md5
+expect 2 "play excludes" $dec "$dir/s.adcgs" --play --md5
 expect 2 "needs --play" $dec "$dir/s.adcgs" --script "$dir/script"
 expect 4 "standard input: ends after 0 bytes" $dec - --play </dev/null
 expect 3 "nowhere" $dec "$dir/nowhere" --play
 expect 3 "nowhere" $dec "$dir/s.adcgs" --play --script "$dir/nowhere"
 expect 4 "script" $dec "$dir/script" --play
-expect 2 "does nothing else" $dec "$dir/s.adcgs" --play --splats "$dir/x.ply"
-expect 2 "does nothing else" $dec "$dir/s.adcgs" --play --beside "$dir/s.adcgs"
+expect 2 "play excludes" $dec "$dir/s.adcgs" --play --splats "$dir/x.ply"
+expect 2 "play excludes" $dec "$dir/s.adcgs" --play --beside "$dir/s.adcgs"
 expect 2 "nobody" $dec "$dir/s.adcgs" --play --camera nobody
 
 unset SDL_VIDEODRIVER SDL_RENDER_DRIVER

@@ -48,7 +48,7 @@ if [ -n "${ADCGS_FULL-}" ]; then
     while kill -0 $pid 2>/dev/null && [ ! -s "$dir/log" ]; do sleep 0.01; done
     mv "$dir/gone" "$dir/elsewhere"
     wait $pid || { bad "a preview that cannot be written ends the run"; cat "$dir/err"; }
-    [ "$(grep -c 'gone/p.ppm: .*; the run goes on' "$dir/err")" -eq 1 ] || { bad "not said once"; cat "$dir/err"; }
+    [ "$(grep -c 'gone/p.ppm: .*; the run continues' "$dir/err")" -eq 1 ] || { bad "not said once"; cat "$dir/err"; }
     cmp "$dir/without.adcgs" "$dir/late.adcgs" || bad "another stream where no preview could be written"
 fi
 exit $failed

@@ -126,7 +126,7 @@ views="--preset draft --max-anchors 300 --threads 1 --set batch=4"
         [ ! -e "$dir/views-log.1" ] || bad "rank 1 has a log"
     done
     same views-6 6 $views --iterations 40
-    grep -q 'one segment, batch=4: no more than 4 of 6 ranks have something to do' "$dir/err" || bad "idle ranks are not told"
+    grep -q 'one segment, batch=4: at most 4 of 6 ranks work' "$dir/err" || bad "idle ranks are not told"
     ./adcgs-enc "$scene" -o "$dir/one.adcgs" $short --set batch=3 --iterations 20 --quiet || bad "one process"
     same chains 5 $short --set batch=3 --iterations 20
 }

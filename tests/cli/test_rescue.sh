@@ -25,7 +25,7 @@ cmp "$dir/good.adcgs" "$dir/small.adcgs" || bad "images without a folder make an
 # goes_on FILE STATE: the command that was given, and its file.
 goes_on()
 {
-    grep -q -- "the state is saved at iteration 12; go on with the same command and --resume $2" "$dir/err" ||
+    grep -q -- "the state is saved at iteration 12; continue with the same command and --resume $2" "$dir/err" ||
         { bad "no word of $2"; cat "$dir/err"; return; }
     # shellcheck disable=SC2086
     expect 0 "" $run -o "$1" --resume "$2"
@@ -61,7 +61,7 @@ mkdir "$state.1.adcgs"
 $run -o "$dir/cut.adcgs" --segment 0.15 >"$dir/out" 2>"$dir/err"
 got=$?
 [ $got -eq 3 ] || { bad "exit code $got of segments, expected 3"; cat "$dir/err"; }
-grep -q -- "saved at iteration 12 of segment 1 of [2-9]; go on with the same command and --resume $state" "$dir/err" ||
+grep -q -- "saved at iteration 12 of segment 1 of [2-9]; continue with the same command and --resume $state" "$dir/err" ||
     { bad "no word of the segment's state"; cat "$dir/err"; }
 rmdir "$state.1.adcgs"
 # shellcheck disable=SC2086

@@ -43,7 +43,7 @@ grep -q '^  predicted from segment 0: ' "$dir/out" || { bad "nothing is predicte
 enc keys --segment 0.1 --key 0
 ! ./adcgs-info "$dir/keys.adcgs" | grep -q predicted || bad "--key 0 has a predicted segment"
 [ "$(stat -c %s "$dir/two.adcgs")" -lt "$(stat -c %s "$dir/keys.adcgs")" ] || bad "predicting does not pay"
-expect 2 "give --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --key 1
+expect 2 "needs --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --key 1
 
 # One byte of the second is wrong: it is refused by name, but not where it is not asked for; the first can be shown, and saved.
 cp "$dir/two.adcgs" "$dir/hurt.adcgs"
@@ -60,7 +60,7 @@ expect 0 "" ./adcgs-info --check "$dir/two.adcgs"
     { bad "--repair does not say what it finds"; cat "$dir/out"; }
 [ "$(spans saved.adcgs)" = "0 0 0.1" ] || bad "what was saved is not the first segment"
 expect 0 "" ./adcgs-info --check "$dir/saved.adcgs"
-expect 2 "go with no other" ./adcgs-info --check --json "$dir/two.adcgs"
+expect 2 "exclude other options" ./adcgs-info --check --json "$dir/two.adcgs"
 
 # One that is as long as the scene is none.
 enc whole --iterations 60
@@ -68,7 +68,7 @@ enc long --iterations 60 --segment 9
 same whole long "a segment longer than the scene changes it"
 
 # One segment instead, where that is neither larger nor worse: that of a run of as many iterations; it is said which was taken.
-expect 2 "give --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --or-whole
+expect 2 "needs --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --or-whole
 # better NAME OPTIONS...: which is taken, one or the segments, fits what is said of both.
 better()
 {
@@ -121,7 +121,7 @@ resume="./adcgs-enc $scene -o $dir/x.adcgs --segment 0.1 --resume $dir/base"
 cp "$dir/first" "$dir/base.1.adcgs"
 # shellcheck disable=SC2086
 {
-    expect 4 "base.1.adcgs: of another run: its seed is another" $resume $short --seed 2
+    expect 4 "base.1.adcgs: belongs to another run: its seed differs" $resume $short --seed 2
     expect 4 "its settings is another" $resume $short --k 3
     expect 4 "its time is another" $resume $short --segment 0.07
     expect 4 "its iterations is another" $resume $short --iterations 400
@@ -142,7 +142,7 @@ fade()
     ./adcgs-enc "$dir/turn" -o "$dir/$name.adcgs" --preset draft --max-anchors 200 --iterations 60 --segment 0.4 "$@" \
         >"$dir/out" 2>&1 || { bad "exit code $?: adcgs-enc $*"; cat "$dir/out"; }
 }
-reach() { ./adcgs-info "$dir/$1.adcgs" | sed -n 's/^  goes on for \(.*\) s, in which the next is faded in$/\1/p' | xargs; }
+reach() { ./adcgs-info "$dir/$1.adcgs" | sed -n 's/^  crossfade of \(.*\) s into the next$/\1/p' | xargs; }
 fade faded --fade 0.07
 [ "$(reach faded)" = 0.0666667 ] || bad "reaches $(reach faded)"
 ./adcgs-info --json "$dir/faded.adcgs" >"$dir/out"
@@ -156,7 +156,7 @@ for t in "$at" 0.42 0.45; do
     ./adcgs-dec "$dir/faded.adcgs" --conceal --camera 0 -t "$t" --md5 >"$dir/whole" || bad "time $t, read whole"
     [ -s "$dir/sought" ] && cmp "$dir/sought" "$dir/piped" && cmp "$dir/sought" "$dir/whole" || bad "other frames at $t"
 done
-expect 2 "give --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --fade 1
+expect 2 "needs --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --fade 1
 
 # Where nothing is seen to move there are no networks of motion, and the time table, which all segments have, is of zeros.
 enc rest --segment 0.1 --set still_below=1000000 --iterations 60

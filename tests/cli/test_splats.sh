@@ -75,7 +75,7 @@ expect 0 "" ./adcgs-info "$s" --points "$dir/points.ply"
 [ "$(vertices "$dir/points.ply")" = "$anchors" ] && [ "$(size "$dir/points.ply")" -eq $((15 * anchors)) ] || bad "points as PLY"
 expect 0 "" ./adcgs-info - --points "$dir/points2.ply" <"$s"
 cmp -s "$dir/points.ply" "$dir/points2.ply" || bad "points from standard input"
-expect 2 "points goes with" ./adcgs-info "$s" --points "$dir/x.ply" --json
+expect 2 "points excludes other" ./adcgs-info "$s" --points "$dir/x.ply" --json
 expect 2 ".ply or .drc" ./adcgs-info "$s" --points "$dir/x.obj"
 expect 3 "no/x.ply" ./adcgs-info "$s" --points "$dir/no/x.ply"
 expect 0 "" ./adcgs-info "$s" --points "$dir/points.drc"
@@ -102,7 +102,7 @@ expect 5 "sequence: a folder of 2 files of splats (t000.ply): sequences" ./adcgs
 expect 5 "t000.ply and 1 more files of splats" ./adcgs-enc "$dir/t000.ply" "$dir/t001.ply" -o "$dir/x.adcgs"
 expect 2 "$dir/t000.ply: one operand too many" ./adcgs-enc "$dir/scene" "$dir/t000.ply" -o "$dir/x.adcgs"
 expect 4 "s.adcgs: an adcgs stream, expected a scene: adcgs-dec" ./adcgs-enc "$s" -o "$dir/x.adcgs"
-expect 2 "s.adcgs is a stream and .*/scene is none: the stream comes first" ./adcgs-eval "$dir/scene" "$s"
+expect 2 "s.adcgs is a stream and .*/scene is not: give the stream first" ./adcgs-eval "$dir/scene" "$s"
 printf '<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html lang="en">' >"$dir/page"
 for program in "adcgs-info" "adcgs-info --check" "adcgs-dec --md5" "adcgs-share -o $dir/x.html"; do
     expect 4 "page: a page of adcgs-share, expected an adcgs stream" ./$program "$dir/page"

@@ -172,7 +172,7 @@ out=$dir/poor
 sweep --lambda 1,2 --yardsticks uncompressed
 [ $got -eq 0 ] || fail "without zstd: $(cat "$dir/err")"
 line 'Against zstd -19: no result (is the program installed?)' "$dir/report"
-line 'no chart (is gnuplot there?)' "$dir/err"
+line 'no chart: install gnuplot' "$dir/err"
 ! grep -q '^zstd' "$out/sweep.csv" || fail "a size without zstd"
 : >"$dir/calls"
 

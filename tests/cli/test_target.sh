@@ -103,11 +103,11 @@ within "$(tr -d ' \n' <"$dir/parts.out" | sed 's/.*"reached":\([0-9.]*\).*/\1/')
 
 # What cannot be had: the nearest is written, and a line says so.
 enc 1 best --psnr 70 --iterations 100
-grep -q "best that this run can do" "$dir/best.err" && [ "$(wc -l <"$dir/best.err")" -eq 1 ] ||
+grep -q "the maximum of this run" "$dir/best.err" && [ "$(wc -l <"$dir/best.err")" -eq 1 ] ||
     { bad "the best goes without a word"; cat "$dir/best.err"; }
 grep -q '"met": false' "$dir/best.out" || bad "--json does not tell that a target is missed"
 enc 1 large --size 900k --iterations 100 --max-anchors 50
-grep -q "smaller than the 900000 asked for" "$dir/large.err" || { bad "too large goes without a word"; cat "$dir/large.err"; }
+grep -q "smaller than the requested 900000" "$dir/large.err" || { bad "too large goes without a word"; cat "$dir/large.err"; }
 
 # Wrong use.
 refuse "too few" --size 3000
@@ -130,7 +130,7 @@ limited 4 '[01]' brief --size 15k
 least=14550 most=15000
 if [ "$got" -eq 1 ]; then
     least=1 most=14550
-    grep -q "smaller than the 15000 asked for" "$dir/brief.err" || { bad "too small goes without a word"; cat "$dir/brief.err"; }
+    grep -q "smaller than the requested 15000" "$dir/brief.err" || { bad "too small goes without a word"; cat "$dir/brief.err"; }
 fi
 within "$(value "$dir/brief.out" iterations)" 1 999999 "iterations within a limit of time"
 within "$(wc -c <"$dir/brief.adcgs")" $least $most "bytes within a limit of time"

@@ -11,7 +11,7 @@ tiny_scene "$scene"
 run="./adcgs-enc $scene --preset draft --max-anchors 150 --iterations 120 --threads 2 --set stereo=0,scale_weight=1000,trial_share=1"
 
 # shellcheck disable=SC2086
-expect 0 'without scale_price [0-9]* images that were held back have' $run -o "$dir/a.adcgs"
+expect 0 'without scale_price [0-9]* held-out images have' $run -o "$dir/a.adcgs"
 expect 0 "" ./adcgs-info --why "$dir/a.adcgs"
 grep -q '^trials .* iterations=120 .*scale_price=' "$dir/out" || { bad "--why lists no trials"; cat "$dir/out"; }
 grep -q '^settings .*scale_weight=0' "$dir/out" || { bad "--why does not list the setting that is off"; cat "$dir/out"; }
