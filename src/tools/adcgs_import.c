@@ -177,8 +177,7 @@ int main(int argc, char **argv)
     char *output = strdup(a.import.output);
     if (!output)
         return adcgs_cli_error(&cli, ADCGS_ERR_MEMORY, "out of memory");
-    for (size_t n = strlen(output); n > 1 && output[n - 1] == '/'; n--) /* unfinished output goes next to the folder, not into
-                                                                           it */
+    for (size_t n = strlen(output); n > 1 && output[n - 1] == '/'; n--) /* unfinished output goes next to it, not inside */
         output[n - 1] = 0;
     a.import.output = output;
     const int leave = import(&cli, &a);

@@ -11,8 +11,7 @@
 #define GUARD 0.95  /* share of the remaining time at which the time limit lies */
 #define BLIND 2.0   /* seconds that must remain for a segment to be trained by the clock before any speed is known */
 #define NEWS 0.4    /* relative change of effort that is reported again */
-#define MOMENTS 8   /* frames of a segment with a delay that are matched, without rigid bodies: matching takes as long as much
-                       of a run */
+#define MOMENTS 8   /* matched frames of a segment with a delay, without rigid bodies: matching takes as long as much of a run */
 
 void adcgs_enc_effort_init(adcgs_enc_effort *e, adcgs_enc_job *job)
 {

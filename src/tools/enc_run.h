@@ -33,8 +33,7 @@ typedef struct adcgs_enc_watcher {
     int keeps;    /* it saves its state at intervals */
     adcgs_trainer *t;
     adcgs_enc_team team; /* ranks that train with this one */
-    uint32_t segment, segments; /* the segment in training, from 0; 0 segments: the scene is not cut, or their number is
-                                   unknown */
+    uint32_t segment, segments; /* the segment in training, from 0; 0 segments: not cut, or number unknown */
     int is_live; /* an interrupt ends the input, not the run */
     char *base;   /* prefix of the run's temporary files: the checkpoint, and those of segments */
     char *state;  /* the current checkpoint */
@@ -47,8 +46,7 @@ typedef struct adcgs_enc_watcher {
     int unsaved; /* the last checkpoint could not be written */
     int cut_short; /* by interrupts: the file was made before the run's end */
     adcgs_train_report last;
-    int (*hear)(void *user, const struct adcgs_enc_watcher *w); /* receives the progress, which is then not shown; nonzero:
-                                                                   stop */
+    int (*hear)(void *user, const struct adcgs_enc_watcher *w); /* receives the progress instead of the display; nonzero: stop */
     void *hear_user;
     size_t uncompressed_bytes;
     char trials[ADCGS_TRIALS_TEXT]; /**< figures of the trials, for the stream; "" without trials */
