@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""How far strict binary32 is from exact arithmetic: conformance vectors are decoded and drawn twice by the text, once as it says,
-once with binary64 in place of binary32 and the functions themselves in place of their polynomials. --check compares what is found
-with the table of annex "Accuracy", else the rows of that table are written anew.
+"""How far strict binary32 is from exact arithmetic. The text decodes and renders conformance vectors twice: once unchanged, and
+once with binary64 in place of binary32 and the functions themselves in place of their polynomials. --check compares the results
+with the table of annex "Accuracy"; without it the rows of that table are rewritten.
 """
 import argparse
 import math
@@ -30,11 +30,11 @@ _row = re.compile(r"^\| (?:`([\w-]+)`|(%s))((?: \| [0-9e.-]+){%d})$" % (ALL, len
 # ---- The text in binary64 ----
 
 def _wide(x):
-    """An operand beside a number of the wide machine."""
+    """Converts the other operand of an operation of the wide machine."""
     return x if type(x) is Wide else Wide(float(x.value if type(x) is Literal else x))
 
 
-Wide = binary.number_class(_wide, lambda x: float.__new__(Wide, x))  # what stands for binary32
+Wide = binary.number_class(_wide, lambda x: float.__new__(Wide, x))  # replaces binary32
 
 
 def _widened(value):
@@ -53,7 +53,7 @@ def _wide_sincospi(x):
 
 
 class WideMachine(Machine):
-    """The specification with binary64 wherever it says binary32."""
+    """The specification with binary64 in place of binary32."""
 
     def __init__(self, master, trace=None):
         super().__init__(master, trace)
@@ -71,10 +71,10 @@ class WideMachine(Machine):
         return names
 
 
-# ---- What decides about a pixel ----
+# ---- The splats that change a pixel ----
 
 def watch(machine):
-    """Keep in machine.drawn, by pixel, the slots that changed it, in order: blending takes no other decision."""
+    """Records in machine.drawn, by pixel, the slots that changed it, in order: blending takes no other decision."""
     blend_pixel = machine.names["blend_pixel"]
     machine.drawn = {}
 
@@ -87,7 +87,7 @@ def watch(machine):
     machine.names.update(blend_pixel=pixel_blended)
 
 
-# ---- What differs ----
+# ---- Differences ----
 
 def _covariance(s):
     w, x, y, z = (float(v) for v in s.rotation)
@@ -116,7 +116,7 @@ class Found(dict):
             self[name] = self[name] + value if name in COUNTS + ("squares",) else max(self[name], value)
 
     def cells(self):
-        """Of the table: counts, and differences rounded up to two digits."""
+        """Cells of the table: counts, and differences rounded up to two digits."""
         self["mean"] = math.sqrt(self["squares"] / max(self["values"], 1))
         return [str(self[name]) if name in COUNTS else _rounded_up(self[name]) for name in COLUMNS]
 
@@ -130,7 +130,7 @@ def _rounded_up(x):
 
 
 def compare_splats(found, narrow, wide):
-    """Positions and colours relative to their size where that is above 1, covariances relative, by their norms."""
+    """Differences of positions and colours are relative to their size where it is above 1; those of covariances to the norm."""
     assert [s.slot for s in narrow] == [s.slot for s in wide]
     for a, b in zip(narrow, wide):
         found.largest("position", _distance(a.mean, b.mean) / max(1.0, *(abs(float(x)) for x in b.mean)))
@@ -142,7 +142,7 @@ def compare_splats(found, narrow, wide):
 
 
 def compare_pixels(found, narrow, wide, other, to_8_bits):
-    """other: other splats have changed this one, or in another order."""
+    """other: the two runs changed this pixel with different splats, or in another order."""
     found["values"] += 3
     found["others"] += 3 * other
     for x, y in zip(narrow, wide):
@@ -191,14 +191,14 @@ def _annex(tree):
 
 
 def stated(tree):
-    """Cells by vector, or by ALL, of the annex."""
+    """Cells of the annex by vector, or by ALL."""
     with open(_annex(tree), encoding="utf-8") as file:
         rows = [_row.match(line.rstrip()) for line in file]
     return {row.group(1) or row.group(2): row.group(3).split(" | ")[1:] for row in rows if row}
 
 
 def compare(name, given, wanted):
-    """What the annex says is what was found, rounded up. Vectors that come later may raise counts of all of them, not more."""
+    """Compares rounded-up results with the annex. New vectors may raise the counts of the row ALL, but no other value."""
     faults = []
     for column, a, b in zip(COLUMNS, given, wanted):
         if column in COUNTS:
@@ -211,7 +211,7 @@ def compare(name, given, wanted):
 
 
 def rows_of(tree, names=None):
-    """(vector or ALL, cells) of all good vectors, or those of these names; ALL comes last and is of those that were measured."""
+    """Yields (vector or ALL, cells) of all good vectors, or of those named; ALL comes last and covers the measured vectors."""
     machines, total = (Machine(tree.master()), WideMachine(tree.master())), Found()
     for machine in machines:
         watch(machine)
@@ -224,7 +224,7 @@ def rows_of(tree, names=None):
 
 
 def check(tree, only=None, every=False):
-    """Faults; only: vectors, where not all of the table; every: the row of all good vectors, too."""
+    """Returns faults. only: vectors to check, None for all of the table; every: check the row of all good vectors, too."""
     wanted, faults = stated(tree), []
     left = {name for name in wanted if name != ALL and (only is None or name in only)}
     if len(wanted) < 2 or ALL not in wanted:
@@ -233,11 +233,11 @@ def check(tree, only=None, every=False):
         if name in left or (name == ALL and every):
             faults += compare(name, cells, wanted[name])
             left.discard(name)
-    return faults + ["%s: the annex has a row of what is no good vector" % name for name in sorted(left)]
+    return faults + ["%s: the annex has a row for a vector that does not exist or is not good" % name for name in sorted(left)]
 
 
 def update(tree, every):
-    """Writes the rows of the table anew, the last one only if all vectors are measured."""
+    """Rewrites the rows of the table, the last one only if all vectors are measured."""
     wanted = stated(tree)
     found = dict(rows_of(tree, None if every else set(wanted)))
     with open(_annex(tree), encoding="utf-8") as file:

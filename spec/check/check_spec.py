@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""Checks the specification: that its text runs, agrees with itself, with the implementation and with the conformance vectors."""
+"""Checks that the text of the specification runs, and agrees with itself, the implementation and the conformance vectors."""
 import argparse
 import os
 import sys
@@ -27,19 +27,19 @@ TITLES = {
 }
 
 
-_streams = {}  # faults and counts of the vectors by what was compared: S3 and S4 decode each stream once for both
+_streams = {}  # faults and counts of the vectors, by the compared points: S3 and S4 share one decoding of each stream
 
 
 def forget():
-    """The text has changed."""
+    """Drops the results of earlier runs, because the text has changed."""
     _streams.clear()
 
 
 def run_streams(name, tree, arguments, names):
-    """S3 or S4; names are all checks that are wanted."""
+    """S3 or S4; names: all requested checks."""
     import streams
     if "S3" in names and not arguments.info:
-        return ["where is adcgs-info? (--info)"], ""
+        return ["S3 needs the program adcgs-info; give its path with --info"], ""
     points = (("trace",) if "S3" in names else ()) + (("model", "splats", "verdict") if "S4" in names else ())
     if points not in _streams:
         _streams[points] = streams.run(tree, arguments.info, points, arguments.jobs, arguments.vectors, arguments.every)
@@ -51,7 +51,7 @@ def run_streams(name, tree, arguments, names):
 
 
 def run_check(name, tree, arguments, names=()):
-    """(faults, remark)."""
+    """Returns (faults, remark)."""
     if name in ("S3", "S4"):
         return run_streams(name, tree, arguments, names or (name,))
     if name == "S1":

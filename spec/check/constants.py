@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""S5: what stands in the text and in the implementation as well, or in the text and in tables, is the same in both."""
+"""S5: values that occur both in the text and in the implementation, or both in the text and in tables, are equal."""
 import ast
 import hashlib
 import os
@@ -18,7 +18,7 @@ from reading import Fault
 GENERATORS = ("make_values.py", "make_logistic.py")
 # Files of the implementation whose hexadecimal fractions are normative.
 STRICT = ("base/fmath.h", "base/lanes.h", "render/project.h", "splat/steps.c", "splat/time_curve.h")
-# Fractions of the text that the implementation writes in another way: file, and what stands there.
+# Fractions of the text that the implementation writes in another form: fraction, file, form in the file.
 OTHERWISE = (
     ("0x1.0624dd2f1a9fcp-10", "render/view.c", "1e-3"),
     ("0x1.3333333333333p-3", "render/view.c", "0.15"),
@@ -43,7 +43,7 @@ def _read(tree, name):
 
 # ---- Tables ----
 
-_generated = {}  # what the generators said of the same files before: they take seconds, and the self test asks often
+_generated = {}  # earlier results of the generators by the hash of their files: they take seconds, and the self test runs often
 
 
 def _generators(tree):
@@ -141,7 +141,7 @@ def _numbers(source):
     return [int(n, 0) for n in re.findall(r"\b0[xX][0-9a-fA-F]+|\b\d+", source)]
 
 
-# What the text calls a constant, where the implementation has it, and how the numbers are found there.
+# Constants: name in the text, file of the implementation, pattern that finds the numbers in the file.
 CONSTANTS = (
     ("E24_MAX", "net/e24.h", r"#define ADCGS_E24_A (\d+)"),
     ("RATE", "bits/adaptive.c", r"rates\[\] = \{([^}]*)\}"),
@@ -198,7 +198,7 @@ def _printed_levels(clause):
 # ---- Version ----
 
 def _version(tree, text):
-    """This text's version is that of the bitstream, in all places that name it; the introduction takes it from the master document."""
+    """All places that name a version of the bitstream agree; the introduction takes its version from the master document."""
     with open(tree.master(), encoding="utf-8") as file:
         master = file.read()
     code = _read(tree, "include/adcgs/version.h")

@@ -22,7 +22,7 @@ def notation(tree, program_of):
     faults = []
     try:
         program = program_of(tree)
-    except Exception as error:  # whatever is wrong with the text ends here, with the place it stands at
+    except Exception as error:  # every error in the text is reported here, with its place
         return ["%s: %s" % (type(error).__name__, error)]
     text = sources.Text(tree)
     if not text.blocks("adcgs-syntax") or not text.blocks("adcgs"):
@@ -39,7 +39,7 @@ def notation(tree, program_of):
 
 
 def unknown_names(text, program):
-    """Names that a process uses and nobody defines would be found only when it runs."""
+    """Names that a process uses without a definition. Otherwise only a run of the process would find them."""
     known = set(program.names) | {"true", "false", "none"}
     faults = []
     for block in text.blocks("adcgs"):
@@ -58,7 +58,7 @@ def unknown_names(text, program):
 # ---- S2: syntax and semantics mirror each other ----
 
 def structures(text):
-    """name: (where, parameters, elements in order of their first line)."""
+    """Returns {name: (where, parameters, elements in order of their first line)}."""
     result = {}
     for block in text.blocks("adcgs-syntax"):
         current = None
@@ -103,7 +103,7 @@ def mirror(tree):
         faults += _ranges(clause, line, name, parameters, elements, rows)
     for name in tables:
         if name not in declared:
-            faults.append("%s: a semantics table for %s, of which there is no syntax table"
+            faults.append("%s: a semantics table for %s, which has no syntax table"
                           % (tables[name][0][0].where(tables[name][0][1]), name))
     return faults
 
@@ -117,7 +117,7 @@ def _ranges(clause, line, name, parameters, elements, rows):
         where = "%s: %s.%s" % (clause.where(line + offset), name, element)
         seen.add(element)
         if not meaning:
-            faults.append("%s: no word on what it means" % where)
+            faults.append("%s: no meaning is given" % where)
         values = values.replace("`", "").strip()
         if not values:
             continue
@@ -174,7 +174,7 @@ def hygiene(tree):
 
 
 def _files(tree, text):
-    faults = ["%s is included and not there" % name for name in text.missing]
+    faults = ["%s is included, but missing" % name for name in text.missing]
     for name in sorted(os.listdir(os.path.join(tree.spec, "clauses"))):
         if "clauses/" + name not in text.included:
             faults.append("clauses/%s is not included in adcgs.adoc" % name)
@@ -239,7 +239,7 @@ def _plain(line):
 
 
 def _terms(text):
-    """A term that is defined and used nowhere is a sign that one of the two was renamed."""
+    """Terms that are defined but used nowhere, or emphasised but not defined: one of the two places was renamed."""
     terms, _ = _definitions(text)
     faults = [] if terms else ["clause 3 defines no terms"]
     words = " ".join(line for clause in text.clauses for number, line in clause.prose

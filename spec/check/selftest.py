@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""Plants one fault after the other in a copy of the specification and its surroundings, and expects the check that it is for to
-notice it, with a message that names it."""
+"""Plants one fault after the other in a copy of the specification and its surroundings, and expects the corresponding check to
+report it with a message that names it."""
 import argparse
 import os
 import re
@@ -16,8 +16,8 @@ here = os.path.dirname(os.path.abspath(__file__))
 
 
 class Fault:
-    """In the file `path` of the copied tree the first place of `pattern`, or each, is replaced by `new`. `vectors` are those that
-    have to notice it, where not the smallest ones do."""
+    """In the file `path` of the copied tree, `new` replaces the first match of `pattern`, or every match. `vectors` have to
+    detect the fault; None: the smallest vectors have to."""
 
     def __init__(self, check, path, pattern, new, message, everywhere=False, vectors=None):
         self.check, self.path, self.pattern, self.new, self.message, self.everywhere = check, path, pattern, new, message, everywhere
@@ -25,12 +25,12 @@ class Fault:
 
 
 def unseen(clause, pattern, new, vector):
-    """A fault of a decoder that no vector noticed before there was this one."""
+    """A fault of a decoder that no vector detected before this one existed."""
     return Fault("S4", "spec/clauses/%s.adoc" % clause, pattern, new, "^%s: " % vector, vectors=[vector])
 
 
 def bounds_unseen(name, vector):
-    """In `project`: each of the two bounds of a number lost, or without the number itself."""
+    """In `project`: each of the two bounds of a number is missing, or excludes the bound itself."""
     low, high = ("-0x1p+20", "0x1p+20") if name in ("u", "v") else ("0x1p-20", "0x1p+40")
     pattern = re.escape("%s <= %s <= %s" % (low, name, high))
     return [unseen("12-rendering", pattern, new % dict(low=low, x=name, high=high), vector) for new in
@@ -38,13 +38,13 @@ def bounds_unseen(name, vector):
 
 
 FAULTS = [
-    # S1: not in the notation; a name nobody defines; the same name twice; an unknown descriptor; an unknown language
+    # S1: not in the notation; an undefined name; the same name twice; an unknown descriptor; an unknown language
     Fault("S1", "spec/clauses/07-parsing.adoc", r"^range_finish\(d\):\n", "range_finish(d):\n    f = lambda: 0\n", "Lambda"),
     Fault("S1", "spec/clauses/08-geometry.adoc", r"compared\(around\.before", "comparedd(around.before", "comparedd"),
     Fault("S1", "spec/clauses/09-networks.adoc", r"^leaky\(v\):", "clip(v, limit):\n    return v\n\nleaky(v):", "clip is defined twice"),
     Fault("S1", "spec/clauses/06-stream.adoc", r"(?<=\s\s)f64 \* 3$", "f65 * 3", "f65"),
     Fault("S1", "spec/clauses/09-networks.adoc", r"^\[source,adcgs\]$", "[source,adcg]", "unknown language"),
-    # S2: a row lost, a row too many, another order, a range that cannot be read, or that looks ahead
+    # S2: a missing row, an extra row, another order, an unreadable range, a range that uses later elements
     Fault("S2", "spec/clauses/06-stream.adoc", r"^\| time_rows \|", "| time_rowz |", r"time_rows has no row"),
     Fault("S2", "spec/clauses/06-stream.adoc", r"^\| time_rows \|(.*)\n\| time_width \|(.*)\n", r"| time_width |\2\n| time_rows |\1\n",
           "another order"),
@@ -134,7 +134,7 @@ FAULTS = [
     # S6: a range that grows, a number of the annex
     Fault("S6", "spec/clauses/06-stream.adoc", r"^\| n_fv \| `?1 \.\. 64`?", "| n_fv | 1 .. 640", "."),
     Fault("S6", "spec/clauses/annex-bounds.adoc", r"\| -34605 \.\. 34605 \|", "| -34605 .. 34604 |", "mixed.total"),
-    # S7: twice, badly formed, cited without being there, not cited, index out of date
+    # S7: defined twice, badly formed, cited but not defined, not cited, index out of date
     Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEOM-001]]", "stands in"),
     Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEO-2]]", "not of the form"),
     Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEOM-998]]", "no test and no vector cites REQ-GEOM-998"),
@@ -160,7 +160,7 @@ FAULTS = [
 
 
 class Arguments:
-    """What check_spec's checks want to know."""
+    """The arguments that check_spec's checks read."""
 
     def __init__(self, info, vectors):
         self.info, self.vectors, self.jobs, self.every = info, vectors, 1, 1
@@ -182,7 +182,7 @@ def copy_tree(top, to):
 
 
 def plant(tree, fault):
-    """The file as it was, or None if the fault finds no place."""
+    """Returns the original text of the file, or None if the pattern does not match."""
     path = os.path.join(tree.top, fault.path)
     if not os.path.exists(path):
         return None
@@ -207,7 +207,7 @@ def run(check, tree, arguments):
 
 
 def try_fault(tree, fault, arguments):
-    """None, or what is wrong."""
+    """Returns None, or a description of the error."""
     before = plant(tree, fault)
     if before is None:
         return "finds no place"

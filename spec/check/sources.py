@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""What the checks look at: the clauses with their blocks, tables, anchors and requirements, and who cites requirements."""
+"""The inputs of the checks: clauses with their blocks, tables, anchors and requirements, and the citations of requirements."""
 import argparse
 import json
 import os
@@ -18,7 +18,7 @@ _heading = re.compile(r"^==+ (.+)$")
 
 
 class Tree:
-    """The folders of a source tree; any of them may be replaced by another place."""
+    """The folders of a source tree; each of them may be replaced by another folder."""
 
     def __init__(self, top, spec=None, codec=None, tests=None, conformance=None):
         self.top = top
@@ -35,7 +35,7 @@ class Tree:
             return json.load(file)
 
     def vectors(self):
-        """Of the manifest: (id, entry, path)."""
+        """Yields (id, entry, path) for each vector of the manifest."""
         for entry in self.manifest()["vectors"]:
             yield entry["id"], entry, os.path.join(self.conformance, entry["file"])
 
@@ -48,7 +48,7 @@ class Block:
 
 
 class Requirement:
-    """A numbered requirement and where it stands."""
+    """A numbered requirement and its place."""
 
     def __init__(self, name, where, section, bare):
         self.name, self.where, self.section, self.bare = name, where, section, bare
@@ -109,7 +109,7 @@ class Clause:
 
 
 def rows_of(lines, columns):
-    """Cells of a table, row by row, with the line of the first cell, counted from 1 within the table."""
+    """Cells of a table, row by row, with the line of each row's first cell, counted from 1 within the table."""
     cells = []
     for offset, line in enumerate(lines, 1):
         parts = re.split(r"(?<!\\)\|", line)
@@ -164,7 +164,7 @@ _function = re.compile(r"^(?:static )?(?:void|int)\s+(test_\w+|LLVMFuzzerTestOne
 
 
 def _citations_of(path, shown):
-    """(requirement, label) for each citation; a label names the file, and the test function that follows or holds it."""
+    """Yields (requirement, label) for each citation; a label names the file and the test function that contains or follows it."""
     with open(path, encoding="utf-8", errors="replace") as file:
         lines = file.read().split("\n")
     starts = []
@@ -185,7 +185,7 @@ def _citations_of(path, shown):
 
 
 def citations(tree):
-    """requirement: (tests, vectors), both lists in order without repetition."""
+    """Returns {requirement: (tests, vectors)}; both lists are in order and without repetition."""
     cited = {}
 
     def add(name, column, label):
@@ -208,7 +208,7 @@ def citations(tree):
 # ---- Generated annexes ----
 
 def write_or_check(description, path_of, generate, check):
-    """The command line of a generator: writes the file that it makes from a tree, or compares; the exit status."""
+    """Command line of a generator: writes the file generated from a tree, or compares it. Returns the exit status."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--source", default=os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
     parser.add_argument("--check", action="store_true", help="compare, write nothing")

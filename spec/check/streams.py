@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""S3 and S4: the text, run over the conformance vectors, says what the implementation and the manifest say."""
+"""S3 and S4: the text, run over the conformance vectors, yields the results of the implementation and of the manifest."""
 import hashlib
 import multiprocessing
 import os
@@ -25,7 +25,7 @@ def _start(master):
 
 
 def decode(path, complete=False, layers=5):
-    """The stream, and the lines of its trace."""
+    """Returns the decoded stream and the lines of its trace."""
     _lines.clear()
     with open(path, "rb") as file:
         data = file.read()
@@ -50,7 +50,7 @@ def _same_trace(entry, path, lines, info):
 
 
 def _refused(path):
-    """A truncated stream is refused to a user who wants complete ones only."""
+    """A truncated stream is refused if the user asks for complete streams only."""
     try:
         decode(path, True)
     except Fault as fault:
@@ -89,7 +89,7 @@ def _check_pictures(stream, expect, cameras, counts):
 
 
 def _check_layers(entry, path, counts):
-    """Of fewer layers than there are: models and splats."""
+    """Models and splats of the stream decoded with fewer layers than it has."""
     faults = []
     for fewer in entry["expect"].get("L", []):
         stream, _ = decode(path, False, fewer["layers"])
@@ -116,7 +116,7 @@ def _check_good(entry, path, info, points, counts):
 
 
 def _check(job):
-    """(id, faults, counts) of one vector."""
+    """Returns (id, faults, counts) of one vector."""
     name, entry, path, info, points = job
     counts = dict.fromkeys(POINTS, 0)
     good = entry["verdict"] == "good"
@@ -129,7 +129,7 @@ def _check(job):
             decode(path)
     except Fault as fault:
         kind = fault.kind
-    except Exception as error:  # the text is wrong here, or the executor: both are findings of this vector
+    except Exception as error:  # an error of the text or of the executor: both are findings of this vector
         return name, ["%s: %s" % (type(error).__name__, error)], counts
     wanted = "good" if good else entry["status"]
     if "verdict" in points or good:
@@ -140,7 +140,7 @@ def _check(job):
 
 
 def run(tree, info, points, jobs=2, only=None, every=1):
-    """(faults, counts): points are those of POINTS to be compared, of one vector in `every`."""
+    """Returns (faults, counts). points: those of POINTS to compare; every: use one vector in so many."""
     work = []
     for name, entry, path in tree.vectors():
         if (only and name not in only) or (entry["verdict"] != "good" and "verdict" not in points):

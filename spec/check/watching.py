@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Looks over the executor's shoulder: which operations the range decoder does and why, what networks compute, what a pixel sees."""
+"""Records the steps of the executor: operations of the range decoder and their callers, sums of networks, splats of a pixel."""
 import linecache
 import os
 import sys
@@ -10,14 +10,14 @@ from binary import F64
 from machine import Machine
 from reading import Bytes, Record
 
-# Processes that only pass on what another one wants to know.
+# Processes that only pass on the request of another process.
 PASSING = {"raw", "bits", "bit", "symbol", "adaptive", "value", "excess", "difference", "mixed", "tree", "uniform", "leaf", "latent",
            "latents", "tail",
            "decode_length", "decode_signed", "inner", "side", "one_sided", "<listcomp>"}
 
 
 class Operation:
-    """One operation of a range decoder: its kind, what it was given, R and V before it, the result, and where the text asks for it."""
+    """One operation of a range decoder: its kind, R and V before it, its arguments, the calling place of the text, its result."""
 
     def __init__(self, kind, state, given, asked):
         self.kind, self.state, self.given, self.asked = kind, state, given, asked
@@ -25,14 +25,14 @@ class Operation:
 
 
 class SubStream:
-    """What happened between range_start and range_finish."""
+    """The operations between range_start and range_finish."""
 
     def __init__(self, d):
         self.d, self.name, self.operations, self.bytes = d, "", [], d.bytes
 
 
 def _asked_by():
-    """Name of the nearest process that says what is decoded, and its statement."""
+    """Returns the nearest process on the stack that is not in PASSING, and its statement."""
     frame = sys._getframe(3)
     while frame:
         code = frame.f_code
@@ -43,7 +43,7 @@ def _asked_by():
 
 
 class Watch:
-    """A machine whose steps are kept."""
+    """A machine whose steps are recorded."""
 
     def __init__(self, master):
         self.lines, self.streams = [], []
@@ -80,7 +80,7 @@ class Watch:
         self._replace(name, make)
 
     def keep(self, *names):
-        """From now on, arguments and result of each call of these processes."""
+        """Records arguments and result of each later call of these processes."""
         for name in names:
             self.calls.setdefault(name, [])
 
@@ -91,7 +91,7 @@ class Watch:
             self._replace(name, make)
 
     def locals_of(self, process, call):
-        """What the named process had computed at the end of each of its calls while call() ran."""
+        """Returns the local variables of the named process at the end of each of its calls, while call() runs."""
         found = []
 
         def look(frame, event, _):
@@ -112,7 +112,7 @@ class Watch:
 
 
 def camera_of(entry):
-    """A camera of the manifest as the text wants it."""
+    """A camera of the manifest in the form that the text uses."""
     numbers = {key: F64(float(entry[key])) for key in ("fx", "fy", "cx", "cy")}
     return Record(width=entry["width"], height=entry["height"], near_plane=F64(float(entry["near"])),
                   cam_to_world=[F64(float(v)) for v in entry["cam_to_world"]], **numbers)

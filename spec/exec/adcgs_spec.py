@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""Runs the specification: a decoder whose only source is the text of the clauses and the tables beside them."""
+"""Runs the specification: a decoder whose only sources are the text of the clauses and the tables that belong to it."""
 import argparse
 import hashlib
 import math
@@ -21,7 +21,7 @@ _number = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 
 
 class Mistake(Exception):
-    """In the requests."""
+    """A mistake in the requests."""
 
 
 def load(path):
@@ -46,7 +46,7 @@ def number(word):
 
 
 def camera_of(words):
-    """Of a request: width, height, then binary64 numbers."""
+    """The camera of a request: width, height, then binary64 numbers."""
     numbers = [number(word) for word in words[2:]]
     width, height = (integer(word, -2 ** 31, 2 ** 31 - 1) for word in words[:2])
     return Record(width=width, height=height, fx=numbers[0], fy=numbers[1], cx=numbers[2], cy=numbers[3], near_plane=numbers[4],
@@ -54,7 +54,7 @@ def camera_of(words):
 
 
 def request_of(words, cameras):
-    """One line; raises Mistake."""
+    """Checks the words of one line; raises Mistake."""
     lengths = {"complete": 1, "layers": 2, "camera": 20, "trace": 1, "model": 1, "splats": 2, "frame": 3}
     if len(words) != lengths.get(words[0]):
         raise Mistake("\"%s\" is no request" % " ".join(words))
@@ -72,7 +72,7 @@ def request_of(words, cameras):
 
 
 def read_requests(data):
-    """(requests, cameras) of the bytes of a file; raises Mistake."""
+    """Returns (requests, cameras) of the bytes of a file; raises Mistake."""
     requests, cameras = [], []
     for line in data.removeprefix(b"\xef\xbb\xbf").split(b"\n"):
         words = [word.decode("latin-1") for word in re.split(rb"[ \t\r]+", line) if word]
@@ -138,14 +138,14 @@ def run(arguments):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--spec", help="the master document (default: the one beside this program)")
+    parser.add_argument("--spec", help="the master document (default: the one of this source tree)")
     commands = parser.add_subparsers(dest="command", required=True)
     for name, text in (("trace", "print position, name and value of every syntax element"),
                        ("digest", "print the digest of each model"), ("verdict", "print good, or the class of the first fault"),
                        ("answer", "answer a request file, as the conformance clause says")):
         command = commands.add_parser(name, help=text)
         if name != "answer":
-            command.add_argument("--partial", action="store_true", help="use what is there of a truncated stream")
+            command.add_argument("--partial", action="store_true", help="use the present part of a truncated stream")
         command.add_argument("file")
         if name == "answer":
             command.add_argument("request")

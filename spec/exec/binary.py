@@ -15,17 +15,17 @@ _u64 = struct.Struct("<Q")
 
 
 class NotationError(Exception):
-    """The text asks for something that its own conventions do not define."""
+    """The text uses a construct that its own conventions do not define."""
 
 
 class Format(float):
-    """A number of some format."""
+    """A number of a binary format."""
 
     __slots__ = ()
 
 
 class Literal:
-    """A constant with a point or exponent: takes the format of the operand it meets."""
+    """A constant with a point or exponent: takes the format of the other operand."""
 
     __slots__ = ("value",)
 
@@ -66,7 +66,7 @@ class Literal:
 
 
 def _round32(x, new=float.__new__, pack=_pack32.pack, unpack=_pack32.unpack):
-    """The binary32 number nearest to x, ties to even. What it calls is bound here: nothing is called more often."""
+    """The binary32 number nearest to x, ties to even. Its callees are default arguments, for speed: it runs most often."""
     try:
         return new(F32, unpack(pack(x))[0])
     except OverflowError:
@@ -74,7 +74,7 @@ def _round32(x, new=float.__new__, pack=_pack32.pack, unpack=_pack32.unpack):
 
 
 def _to32(x):
-    """An operand beside a binary32 number."""
+    """Converts the other operand of an operation on a binary32 number."""
     kind = type(x)
     if kind is F32:
         return x
@@ -206,7 +206,8 @@ def binary32(x):
 
 
 def _odd_int(x):
-    """An integer too long for binary64, cut to 53 bits such that rounding it again is right: the last bit collects the rest."""
+    """An integer too long for binary64, cut to 53 bits by rounding to odd: the last bit is 1 if any bit cut off is. Rounding the
+    result to binary32 is then right."""
     shift = abs(x).bit_length() - 53
     kept = abs(x) >> shift
     if kept << shift != abs(x):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
 """Recomputes the tables of annex "Numerical bounds" from the text: its ranges, its constants, its tables, and, for binary32,
-its own processes, run with intervals in place of numbers. --check compares, else the values are printed.
+its own processes, run with intervals in place of numbers. --check compares; without it the values are printed.
 """
 import argparse
 import math
@@ -25,7 +25,7 @@ TYPES.update({"i%d" % n: (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32
 # ---- Intervals ----
 
 def rounded(x):
-    """The binary32 number nearest to x, ties to even, as a fraction; it has to be finite."""
+    """The binary32 number nearest to x, ties to even, as a fraction. The result has to be finite."""
     magnitude = abs(x)
     exponent = magnitude.numerator.bit_length() - magnitude.denominator.bit_length()  # of the leading bit, or one too large
     exponent -= magnitude < Fraction(2) ** exponent
@@ -36,7 +36,7 @@ def rounded(x):
 
 
 class Interval:
-    """A binary32 number of which only bounds are known. Since rounding keeps order, the bounds of a rounded result are the
+    """A binary32 number that is known by its bounds only. Since rounding keeps order, the bounds of a rounded result are the
     rounded bounds of the exact one."""
 
     peak = 0  # largest magnitude that any operation gave
@@ -115,7 +115,7 @@ def sigmoid(x):
 
 
 def normalise(w, x, y, z):
-    """Norms between 2^-40 and 2^100 only: a component is at most the root, give or take roundings. The rest is the identity."""
+    """Norms between 2^-40 and 2^100: a component is at most the root, up to roundings. Other norms: the identity."""
     return [Interval(-1 - 2.0 ** -20, 1 + 2.0 ** -20) for _ in range(4)]
 
 
@@ -135,7 +135,7 @@ def power_of_two(x, up):
 # ---- Quantities ----
 
 class Bounds:
-    """(low, high) by name; binary32 quantities are brought to powers of two."""
+    """(low, high) by name; bounds of binary32 quantities are rounded outwards to powers of two."""
 
     def __init__(self, machine):
         self.m, self.found = machine, {}
@@ -167,7 +167,7 @@ class Bounds:
         raise SystemExit("bounds: the text has no process %s" % name)
 
     def rests_on(self, fragment):
-        """A proof of the annex uses this piece of the text; if it is not there, the proof has to be looked at again."""
+        """A proof of the annex uses this fragment of the text; if the text lacks it, the proof has to be checked again."""
         if not any(fragment in line for block in self.m.text.blocks for line in block.lines):
             raise SystemExit("bounds: the text no longer says \"%s\"" % fragment)
 
@@ -191,7 +191,7 @@ def range_decoder(b):
 
 def decisions(b):
     rate, low, high, count = b.m.names["RATE"], 32768, 32768, 0
-    while True:  # the extremes are those of all outcomes alike, since an update keeps the order of probabilities
+    while True:  # all outcomes equal give the extremes, since an update keeps the order of probabilities
         step = rate[min(count, len(rate) - 1)]
         lower, higher = low - (low >> step), high + ((65535 - high) >> step)
         if count >= len(rate) and (lower, higher) == (low, high):
@@ -287,7 +287,7 @@ def stream(b):
 # ---- Binary32: the processes of the text on intervals ----
 
 def on_intervals(m):
-    """The text's processes on intervals. What branches on values stands above, in place of the text's."""
+    """The text's processes on intervals. The functions above replace the processes that branch on values."""
     m.names.update(fma=fma, clamp=clamp, leaky32=leaky32, exp=exp, sigmoid=sigmoid, normalise=normalise, binary32=Interval.of)
 
 
@@ -356,7 +356,7 @@ def splats(b):
     b.real("life.position", life.position[0])
     b.real("life.presence", life.presence)
     pose = m.body_pose(Record(head=Record(time_width=0)), [of_time] * 7, 1)
-    b.rests_on("fma(binary32(low[a] + high[a] + 1), half, model.origin[a])")  # so it lies where an anchor may lie
+    b.rests_on("fma(binary32(low[a] + high[a] + 1), half, model.origin[a])")  # so a centre lies in the range of anchor positions
     position = m.carry(pose, m.anchor_position(model, 0), life.position, primitive)
     b.real("body.way", pose.way[0])
     b.real("body.position", position[0])
@@ -391,7 +391,7 @@ def rendering(b, splat):
 
 
 def needle(b, splat):
-    """A splat that is drawn. Intervals alone know too little here; these are the inequalities of the annex in exact numbers."""
+    """A rendered splat. Intervals alone give too wide bounds here; these are the inequalities of the annex in exact numbers."""
     u = Fraction(1, 2 ** 24)
     b.rests_on("q = 0x1.ffff8p-1 * fma(f[0][2], f[1][2], fma(f[0][1], f[1][1], f[0][0] * f[1][0]))")
     shear = Fraction(float.fromhex("0x1.ffff8p-1"))
@@ -416,7 +416,7 @@ def needle(b, splat):
 def blending(b, splat, a, ratio):
     u = Fraction(1, 2 ** 24)
     low, high = b.m.names["POWER_MIN"].value, math.log2(splat.opacity.high) + 1e-7
-    assert 1 - ratio > (5 + 2 * u) * u  # more than the roundings of `power` can take away
+    assert 1 - ratio > (5 + 2 * u) * u  # more than the roundings of `power` can subtract
     offset = symmetric(2.0 ** 20 + 16384)
     b.real("blend.dx", offset)
     Interval.peak = 0
@@ -464,7 +464,7 @@ def bounds_of(machine):
 # ---- The annex ----
 
 def rows_of(path):
-    """(name, low, high, types) of each row of the annex's tables, with its line."""
+    """Yields (line, name, low, high, types) for each row of the annex's tables."""
     inside, last = False, ""
     with open(path, encoding="utf-8") as file:
         for number, line in enumerate(file, 1):
@@ -495,7 +495,7 @@ def check(annex, found):
 
 
 def shown(x):
-    """Powers of two as such."""
+    """A number as text; powers of two, and numbers next to them, in the form 2**n."""
     for offset in (0, 1):
         n = abs(x) + offset
         if n > 4096 or 0 < n < 1:
@@ -507,7 +507,7 @@ def shown(x):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--spec", help="the master document (default: the one beside this program)")
+    parser.add_argument("--spec", help="the master document (default: the one of this source tree)")
     parser.add_argument("--check", action="store_true", help="compare with the annex")
     arguments = parser.parse_args()
     machine = Machine(arguments.spec)

@@ -23,8 +23,8 @@ class Dictionary(dict):
 
 
 def _copy(value):
-    """A copy of its own of a record or an array, without what copy.deepcopy() does for values that contain themselves: arrays of
-    contexts are a third of what decoding takes."""
+    """A deep copy of a record or an array, without the checks of copy.deepcopy() for values that contain themselves: arrays of
+    contexts take a third of the decoding time."""
     kind = type(value)
     if kind is Record:
         result = Record()
@@ -99,7 +99,7 @@ class Machine:
         raise AttributeError("the text defines no %s" % name)
 
     def decode_stream(self, data, complete_only, layers=5):
-        """The text's process of this name; all layers unless the caller wants fewer."""
+        """The text's process of this name; all layers unless the caller asks for fewer."""
         return self.names["decode_stream"](data, complete_only, layers)
 
     # ---- Built-in processes ----
@@ -118,7 +118,7 @@ class Machine:
         return names
 
     def _load_tables(self):
-        """STRETCH and SQUASH from a file of annex "Tables"; VALUE_TABLE is filled once the process that completes it is there."""
+        """STRETCH and SQUASH from a file of annex "Tables"; VALUE_TABLE is filled after its process is compiled."""
         rows = self._rows("logistic.csv")
         values = [[None] * 64 for _ in range(4)]
         return {"VALUE_TABLE": values, "STRETCH": [row[1] for row in rows], "SQUASH": [row[2] for row in rows]}
@@ -167,7 +167,7 @@ class Machine:
             return None
 
     def _name(self, name):
-        """In the trace FEA is the layer whose table was read last."""
+        """In the trace FEA gets the number of the layer whose table was read last."""
         return re.sub(r"^FEA\b", "FEA" + self.layer, name)
 
     def _trace_end(self, name, d):

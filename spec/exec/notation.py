@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Reads the pseudo-code of the specification and makes it run.
 
-The blocks of the clauses are a small subset of Python's grammar (clause "Conventions", pseudo-code). This module takes them
-out of the text, brings them to plain Python, refuses whatever is not in the subset, and compiles them. Syntax tables become
-functions that read their elements one by one, each with the range that the semantics table behind it gives.
+The blocks of the clauses are in a small subset of Python's grammar (clause "Conventions", pseudo-code). This module extracts
+them from the text, converts them to plain Python, refuses every construct outside the subset, and compiles them. Syntax tables
+become functions that read their elements one by one, each with the range that the following semantics table gives.
 """
 import ast
 import os
@@ -35,7 +35,7 @@ _nodes = {
 
 
 class Block:
-    """A block of notation and where it stands."""
+    """A block of notation and its place."""
 
     def __init__(self, language, path, line, lines):
         self.language, self.path, self.line, self.lines = language, path, line, lines
@@ -52,7 +52,7 @@ class Row:
 
 
 class Text:
-    """What the clauses of a specification hold: blocks in order, and semantics tables by structure."""
+    """The contents of the clauses of a specification: blocks in order, and semantics tables by structure."""
 
     def __init__(self, master):
         self.blocks, self.semantics, self.files = [], {}, []
@@ -84,7 +84,7 @@ class Text:
 
     @staticmethod
     def _fenced(path, lines, i, fence):
-        """First and last line between fences, the first of which follows within three lines (a title may stand before it)."""
+        """First and last line between two fences. The first fence follows within three lines (a title may stand before it)."""
         for start in range(i + 1, min(i + 4, len(lines))):
             if lines[start].rstrip() == fence:
                 for end in range(start + 1, len(lines)):
@@ -124,7 +124,7 @@ def _range(cell, where):
 
 
 class _Rewrite(ast.NodeTransformer):
-    """Refuses what is not in the subset; brings constants, slices and divisions to calls with exact meaning."""
+    """Refuses constructs outside the subset; converts constants, slices and divisions to calls with exact meaning."""
 
     def __init__(self, program, where, line):
         self.program, self.where, self.line = program, where, line
@@ -165,7 +165,7 @@ class _Rewrite(ast.NodeTransformer):
             return _call_of("_divide", [node.left, node.right], node)
         if isinstance(node.op, ast.Pow):
             base, exponent = node.left, node.right
-            if _is_integer(base) and _is_integer(exponent):  # once, not each time that it is met
+            if _is_integer(base) and _is_integer(exponent):  # once, not at each evaluation
                 return ast.copy_location(ast.Constant(base.value ** exponent.value), node)
             return _call_of("_power", [node.left, node.right], node)
         return node
@@ -180,7 +180,7 @@ def _call_of(name, arguments, node):
 
 
 class Program:
-    """The compiled blocks: `names` is the namespace in which processes and constants live."""
+    """The compiled blocks: `names` is the namespace of processes and constants."""
 
     def __init__(self, text, builtins):
         self.names = dict(builtins)
@@ -304,6 +304,6 @@ def _definitions(block):
             code = line.split("#")[0]
             depth += sum(code.count(c) for c in "([{") - sum(code.count(c) for c in ")]}")
         elif line.strip() and not line.startswith("#"):
-            raise NotationError("%s: a line that belongs to nothing" % block.where(offset))
+            raise NotationError("%s: an indented line outside any definition" % block.where(offset))
     if lines:
         yield start, lines

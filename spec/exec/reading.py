@@ -6,7 +6,7 @@ from binary import F32, F64, NotationError
 
 
 class Fault(Exception):
-    """The stream is not as the text wants it. kind: data, limit, truncated or unsupported."""
+    """The stream violates the text. kind: data, limit, truncated or unsupported."""
 
     def __init__(self, kind, what):
         super().__init__("%s: %s" % (kind, what))
@@ -41,7 +41,7 @@ class Record:
 
 
 class Sparse(list):
-    """An element with an index: entries never read are none."""
+    """An element with an index: entries that were never read are none."""
 
     def put(self, index, value):
         if index < 0:

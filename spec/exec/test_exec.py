@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""The executor itself: its arithmetic against exact rationals, what the notation refuses, and how elements are read."""
+"""Tests of the executor: its arithmetic against exact rationals, refused notation, and the reading of elements."""
 import math
 import os
 import random
@@ -20,7 +20,7 @@ from reading import Bytes, Fault
 
 
 def nearest32(exact):
-    """An exact rational rounded to binary32, by search for the two neighbours."""
+    """An exact rational rounded to binary32, by a search for its two neighbours."""
     if exact == 0:
         return 0.0
     exponent = max(math.floor(math.log2(abs(exact))) - 25, -149)
@@ -38,7 +38,7 @@ def nearest32(exact):
 
 
 def some_number(source):
-    """Patterns with many equal exponents, few significant bits, and subnormal numbers among them."""
+    """A random number; many have equal exponents or few significant bits, or are subnormal."""
     bits = source.getrandbits(32)
     choice = source.randrange(4)
     if choice == 0:
@@ -81,7 +81,7 @@ class Arithmetic(unittest.TestCase):
         self.assertEqual(float(binary32(2 ** 60 + 2 ** 36 + 1)), float(2 ** 60 + 2 ** 37))
 
     def test_kinds_do_not_mix(self):
-        """REQ-CONV-012: formats never meet, and what meets them is exact."""
+        """REQ-CONV-012: numbers of two formats never meet; a constant or an integer that meets a format is exact in it."""
         for wrong in (lambda: binary32(1) + F64(1), lambda: binary32(1) + Literal(0.1), lambda: binary32(1) + (2 ** 24 + 1),
                       lambda: divide(1, 2), lambda: binary32(1) // 2, lambda: power(binary32(2), 2), lambda: binary32(1) < F64(1)):
             self.assertRaises(NotationError, wrong)
@@ -90,7 +90,7 @@ class Arithmetic(unittest.TestCase):
 
 
 class Blocks(unittest.TestCase):
-    """REQ-CONV-011: what the notation takes and what it refuses."""
+    """REQ-CONV-011: constructs that the notation accepts and refuses."""
 
     def machine(self, process="", syntax="", semantics=""):
         folder = tempfile.TemporaryDirectory()
@@ -125,7 +125,7 @@ class Blocks(unittest.TestCase):
         self.assertRaises(NotationError, self.machine, "", table % "")
 
     def test_reads_elements(self):
-        """REQ-CONV-006, REQ-CONV-014: descriptors, ranges, indices, and what is a fault."""
+        """REQ-CONV-006, REQ-CONV-014: descriptors, ranges, indices, and faults."""
         m, lines = self.machine("f(b):\n    return parse(X, b, 2)",
                                 "X(k):\n    n               u8\n    v               i16 * k\n    for i in range(n):\n"
                                 "        y[i]        Y()\n    if n > 1:\n        w           var\n    s               text(0, 3)\nY():\n"
@@ -141,7 +141,7 @@ class Blocks(unittest.TestCase):
 
 
 class Examples(unittest.TestCase):
-    """What clauses give as examples is what their processes yield."""
+    """The processes of clauses yield the values of the clauses' examples."""
 
     @classmethod
     def setUpClass(cls):
@@ -167,7 +167,7 @@ class Examples(unittest.TestCase):
             self.assertEqual(self.value_of(expression), int(value), case)
 
     def test_var(self):
-        """REQ-CONV-006: the bytes of `var`, and those that are none."""
+        """REQ-CONV-006: valid and invalid bytes of `var`."""
         table = self.clause("04-conventions.adoc").split("| Bytes of a `var` | Value")[1].split("|===")[0]
         rows = re.findall(r"^\| ([0-9A-F ,]+) \| (.*)$", table, re.M)
         self.assertEqual(len(rows), 8)
@@ -181,7 +181,7 @@ class Examples(unittest.TestCase):
                     self.assertEqual(machine.reading.read(s, "x", "var", [], None, None, None), wanted)
 
     def test_requests(self):
-        """REQ-CONF-012: the words that are numbers, and those that are not; whole files."""
+        """REQ-CONF-012: words that are numbers, and words that are not; whole files."""
         table = self.clause("13-conformance.adoc").split(".Numbers in requests")[1].split("|===")[1]
         rows = [(re.findall(r"`([^`]+)`", words), what) for words, what in re.findall(r"^\| (`.*) \| (.*)$", table, re.M)]
         self.assertEqual(len(rows), 3)
@@ -218,7 +218,7 @@ class Examples(unittest.TestCase):
         m.range_finish(d)
 
     def test_adaptive(self):
-        """REQ-PARS-010: where four outcomes take a fresh context."""
+        """REQ-PARS-010: the states of a fresh context under four outcomes."""
         text = self.clause("07-parsing.adoc")
         outcomes, states = re.search(r"outcomes ([01, ]+) take .*? from \(32768, 0\) to (.*)\.", text).groups()
         context = self.machine.context()
@@ -240,7 +240,7 @@ class Examples(unittest.TestCase):
             self.assertTrue(line == "..." or line in trace, line)
 
     def test_stream_bytes(self):
-        """REQ-STRM-004, REQ-STRM-034: the bound on the bytes of a stream, for which no vector is small enough."""
+        """REQ-STRM-004, REQ-STRM-034: the bound on the bytes of a stream; a vector for it would be too large."""
         m = machine.Machine()
         with open(os.path.join(machine.folder, "..", "conformance", "vectors", "good-geom-one-anchor.adcgs"), "rb") as file:
             data = Bytes.at(file.read(), 0)
@@ -252,7 +252,7 @@ class Examples(unittest.TestCase):
         self.assertEqual(caught.exception.kind, "limit")
 
     def test_numbers_of_the_trace(self):
-        """REQ-STRM-041: the rule for 9 and 17 digits, in exact arithmetic, gives what is written, and the examples of the clause."""
+        """REQ-STRM-041: the rule for 9 and 17 digits, in exact arithmetic, gives the written numbers and the examples."""
         def shown(x, digits):
             if x == 0:
                 return "-0" if math.copysign(1, x) < 0 else "0"
@@ -284,7 +284,7 @@ class Examples(unittest.TestCase):
             self.assertEqual(shown(float(binary32(float(example))), 9), example)
 
     def test_seeking(self):
-        """The index is where the informative clause finds it, and the bytes that it gives are those of segments."""
+        """The index is at the place that the informative clause computes, and it gives the bytes of segments."""
         path = os.path.join(machine.folder, "..", "conformance", "vectors", "good-seq-segments.adcgs")
         with open(path, "rb") as file:
             data = file.read()
@@ -296,7 +296,7 @@ class Examples(unittest.TestCase):
         self.assertEqual([8 * at for at in offsets], [int(line.split()[0]) for line in lines if line.endswith(" chunk.type SEGM")])
 
     def test_checksum(self):
-        """REQ-STRM-002: the CRC of nine digits, and of nothing."""
+        """REQ-STRM-002: the CRC of nine digits, and of no bytes."""
         wanted = re.search(r"`123456789` is\s+([0-9A-F]{8})", self.clause("06-stream.adoc")).group(1)
         self.assertEqual(self.machine.crc32c(list(b"123456789")), int(wanted, 16))
         self.assertEqual(self.machine.crc32c([]), 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""What the generators of tables share: a CSV file, the C header made from it, and the digest that annex "Tables" prints.
+"""Common part of the generators of tables: a CSV file, the C header made from it, and the digest that annex "Tables" prints.
 
 Run from the top of the source tree, a generator rewrites all three; with --check it compares.
 """
@@ -20,7 +20,7 @@ def read(path):
 
 
 def annex_with(path, text):
-    """The annex, where the row of this CSV file tells its number of lines and its digest."""
+    """The annex with the number of lines and the digest of this CSV file in its row."""
     name = re.escape(path.split("/", 1)[1])
     row = r"(\| `%s` \| )\d+ \| `[0-9a-f]*`" % name
     fresh = r"\g<1>%d | `%s`" % (text.count("\n"), hashlib.sha256(text.encode("ascii")).hexdigest())
@@ -43,7 +43,7 @@ def entries(items, width=126):
 
 
 def main(csv_path, csv_lines, header_path, header_lines):
-    """header_lines: a function of the CSV's lines without the first."""
+    """Rewrites or compares all three files. header_lines: a function of the CSV's lines without the first."""
     csv = list(csv_lines)
     files = {csv_path: as_text(csv), header_path: as_text(header_lines(csv[1:]))}
     files[ANNEX] = annex_with(csv_path, files[csv_path])

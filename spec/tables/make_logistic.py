@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Writes logistic.csv, the stretch and squash tables of annex "Tables", and from it codec/geom/logistic_data.h.
 
-The CSV is normative; this script records where its numbers come from. Run it from the top of the source tree:
-`spec/tables/make_logistic.py` rewrites both files and the digest in the annex, with --check it compares.
+The CSV is normative; this script records the origin of its numbers. Run it from the top of the source tree:
+`spec/tables/make_logistic.py` rewrites both files and the digest in the annex; with --check it compares.
 """
 import sys
 from decimal import Decimal as D, ROUND_FLOOR, getcontext

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Writes values.csv, the probability tables of annex "Tables", and from it codec/net/tables_data.h.
 
-The CSV is normative; this script records where its numbers come from. Generalised Gaussian densities with standard
-deviation sigma and exponent beta, integrated over unit bins with 80 decimal digits, so that no rounding is in doubt.
-Run it from the top of the source tree: `spec/tables/make_values.py` rewrites both files and the digest in the annex, with --check it
-compares.
+The CSV is normative; this script records the origin of its numbers: generalised Gaussian densities with standard
+deviation sigma and exponent beta, integrated over unit bins with 80 decimal digits, so that every rounding is certain.
+Run it from the top of the source tree: `spec/tables/make_values.py` rewrites both files and the digest in the annex;
+with --check it compares.
 """
 import sys
 from decimal import Decimal as D, ROUND_FLOOR, ROUND_CEILING, getcontext
@@ -50,7 +50,7 @@ def support(level):
 
 
 def left_half(beta, level, gammas):
-    """c[0..T] and the total c[2T+1]: cumulative frequencies of the values -T, ..., -1 and of all values but the escape."""
+    """c[0..T] and the total c[2T+1]: cumulative frequencies of the values -T, ..., -1 and of all values except the escape."""
     t = support(level)
     alpha = sigma(level) * (gammas[0] / gammas[1]).sqrt()
     inside = [lower_gamma(1 / beta, power((D(j) + D("0.5")) / alpha, beta)) / gammas[0] for j in range(t + 1)]

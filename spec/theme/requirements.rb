@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# Shows the numbers of requirements: in the source they are anchors, which leave no trace in print. And puts files that belong to
-# the text into its pages, byte for byte: attached:tables/x.csv[] is a link that holds the file, in a PDF an attachment.
+# Prints the numbers of requirements, which are anchors in the source and would otherwise not be visible. Also embeds files that
+# belong to the text, byte for byte: attached:tables/x.csv[] is a link that contains the file, in a PDF an attachment.
 require 'asciidoctor/extensions'
 require 'base64'
 
@@ -39,7 +39,7 @@ Asciidoctor::Extensions.register do
 end
 
 if defined? Asciidoctor::PDF
-  # Puts the files that the text attaches into the PDF before it is written.
+  # Embeds the attached files in the PDF before it is written.
   class AttachingConverter < Asciidoctor::Converter.for('pdf')
     register_for 'pdf'
 
