@@ -151,7 +151,7 @@ static adcgs_status print_expected(FILE *out, const adcgs_plan *plan, adcgs_deco
     return ADCGS_OK;
 }
 
-/* With no more than so many layers; frames follow from splats as ever. */
+/* Results with at most plan->fewer[i] layers. Frames are not listed: they follow from the splats. */
 static adcgs_status print_fewer(FILE *out, const adcgs_plan *plan, const adcgs_buffer *file, int i, adcgs_error *error)
 {
     adcgs_config config;
@@ -179,7 +179,7 @@ static adcgs_status print_good(FILE *out, const adcgs_plan *plan, const adcgs_bu
     adcgs_decoder *decoder = NULL;
     adcgs_config config;
     if (!covers)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: covers nothing", plan->recipe->id);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the recipe has no command covers", plan->recipe->id);
     ADCGS_TRY(print_requirements(out, "covers", covers, error));
     adcgs_config_init(&config, sizeof config);
     config.threads = 1;
@@ -196,20 +196,20 @@ static adcgs_status print_good(FILE *out, const adcgs_plan *plan, const adcgs_bu
     return status;
 }
 
-/* expect CLASS "part of the message": so that nothing is refused for another reason than is meant. */
+/* expect CLASS "part of the message": ensures that the decoder refuses the vector for the intended reason. */
 static adcgs_status print_bad(FILE *out, const adcgs_plan *plan, const char *verdict, adcgs_status status, const char *message,
                               size_t bytes, adcgs_error *error)
 {
     const adcgs_command *const violates = own_command(plan, "violates"), *const expect = own_command(plan, "expect");
     if (!violates || !expect || expect->n != 3)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: lacks violates or expect", plan->recipe->id);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the recipe lacks violates, or expect CLASS TEXT", plan->recipe->id);
     if (strcmp(class_of(status), expect->word[1]) || !strstr(message, expect->word[2]))
         return adcgs_fail(error, ADCGS_ERR_INTERNAL, "%s: ends with \"%s\" (%.100s), expected \"%s\" (%.60s)", plan->recipe->id,
                           class_of(status), message, expect->word[1], expect->word[2]);
     if ((strcmp(verdict, "limit") == 0 && status != ADCGS_ERR_LIMIT) ||
         (strcmp(verdict, "unsup") == 0 && status != ADCGS_ERR_UNSUPPORTED) ||
         (strcmp(verdict, "bad") == 0 && status != ADCGS_ERR_DATA && status != ADCGS_ERR_TRUNCATED))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: its name and its class differ", plan->recipe->id);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the verdict in its name does not fit its class", plan->recipe->id);
     fprintf(out, ",\n      \"status\": \"%s\"", class_of(status));
     ADCGS_TRY(print_requirements(out, "violates", violates, error));
     fprintf(out, ",\n      \"props\": { \"bytes\": %zu }", bytes);
@@ -236,7 +236,7 @@ adcgs_status adcgs_answers_print(FILE *out, const adcgs_plan *plan, const adcgs_
     adcgs_md5 md5;
     char hex[33];
     if (!*verdict || !title || title->n != 2 || !is_plain(title->word[1]))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: lacks a verdict in its name or a plain title in quotes", id);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: needs a verdict in its name and a plain title in quotes", id);
     adcgs_trace_sum_init(&trace);
     const adcgs_status status = adcgs_stream_read(&stream, adcgs_span_read, &source, &options, adcgs_trace_sum_add, &trace, &why);
     if (status == ADCGS_OK)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""Checks conformance/manifest.json: its schema, and what a schema cannot say.
+"""Checks conformance/manifest.json against its schema, and conditions that a schema cannot express.
 
 usage: check_manifest.py SOURCE    the folder with conformance/ and spec/
 
-Knows the part of JSON Schema that schema.json uses, and refuses any other, so that nothing in it goes unchecked.
+Supports the part of JSON Schema that schema.json uses, and refuses other keywords, so that no part of it is left unchecked.
 """
 import hashlib
 import json
@@ -35,7 +35,7 @@ def object_faults(value, schema, root, where):
         if name in members:
             yield from faults(item, members[name], root, f"{where}.{name}")
         elif schema.get("additionalProperties", True) is False:
-            yield f"{where}: {name} is not known"
+            yield f"{where}: {name} is unknown"
 
 
 def array_faults(value, schema, root, where):
@@ -61,10 +61,10 @@ def scalar_faults(value, schema, where):
 
 
 def faults(value, schema, root, where):
-    """What a schema says against a value, in words."""
+    """Yields a message for each violation of the schema by a value."""
     unknown = set(schema) - KNOWN
     if unknown:
-        yield f"schema: {sorted(unknown)} is not known here"
+        yield f"schema: this program does not support {sorted(unknown)}"
     if "$ref" in schema:
         yield from faults(value, root["$defs"][schema["$ref"].removeprefix("#/$defs/")], root, where)
     if "type" in schema and not type_fits(value, schema["type"]):
@@ -82,7 +82,7 @@ def faults(value, schema, root, where):
 
 
 def vector_faults(vector, folder, requirements):
-    """Beyond the schema: files are there and are what the entry says; requirements exist."""
+    """Beyond the schema: the files exist and fit the entry; the requirements exist."""
     name, path = vector["id"], folder / vector["file"]
     if vector["file"] != f"vectors/{name}.adcgs" or vector["recipe"] != f"recipes/{name}.txt":
         yield f"{name}: its files have other names"
@@ -93,7 +93,7 @@ def vector_faults(vector, folder, requirements):
         return
     data = path.read_bytes()
     if hashlib.md5(data).hexdigest() != vector["md5"] or len(data) != vector["props"]["bytes"]:
-        yield f"{name}: the file is not the one that was meant"
+        yield f"{name}: MD5 or size of the file differ from the entry"
     if len(data) > SIZE_MAX:
         yield f"{name}: {len(data)} bytes"
     for requirement in vector.get("covers", []) + vector.get("violates", []):
@@ -103,7 +103,7 @@ def vector_faults(vector, folder, requirements):
         frames = {(frame["camera"], frame["time"]) for frame in vector["expect"]["R"]}
         wanted = {(i, splats["time"]) for i in range(len(vector["cameras"])) for splats in vector["expect"]["S"]}
         if frames != wanted or len(vector["expect"]["M"]) != vector["props"]["segments"]:
-            yield f"{name}: what is expected does not fit together"
+            yield f"{name}: the expected results do not fit each other"
         if len(frames) != vector["props"]["frames"]:
             yield f"{name}: has {len(frames)} frames"
 
@@ -115,7 +115,7 @@ def suite_faults(vectors, folder):
     for kind, ending in (("vectors", ".adcgs"), ("recipes", ".txt")):
         there = {path.name for path in (folder / kind).iterdir()}
         for path in sorted(there ^ {name + ending for name in names}):
-            yield f"{kind}/{path}: is not both in the manifest and there"
+            yield f"{kind}/{path}: is missing in the manifest or in the folder"
     verdicts = [vector["verdict"] for vector in vectors]
     counts = {"good": verdicts.count("good"), "bad": verdicts.count("bad"),
               "at the edges": verdicts.count("limit") + verdicts.count("unsup")}

@@ -45,7 +45,7 @@ void adcgs_chunk_list_remove(adcgs_chunk_list *list, int at)
     memmove(&list->chunk[at], &list->chunk[at + 1], (size_t)(--list->n - at) * sizeof list->chunk[0]);
 }
 
-/* Positions of all chunks. The index's own length must be known for it: that depends on the number of segments alone. */
+/* Computes the positions of all chunks. The length of the index must be known; it depends on the number of segments only. */
 static void place(adcgs_chunk_list *list)
 {
     size_t at = SIGNATURE;
@@ -55,7 +55,7 @@ static void place(adcgs_chunk_list *list)
     }
 }
 
-/* Whether a NETW between the SEGM at this place and its GEOM holds the network of this id. */
+/* True if a NETW between the SEGM at this index and its GEOM holds the network of this id. */
 static int is_sent(const adcgs_chunk_list *list, int segm, uint32_t id)
 {
     for (int i = segm + 1; i < list->n && !is_type(&list->chunk[i], "GEOM") && !is_type(&list->chunk[i], "SEGM"); i++) {
@@ -70,7 +70,7 @@ static int is_sent(const adcgs_chunk_list *list, int segm, uint32_t id)
     return 0;
 }
 
-/* Whether the segment is a key: not predicted, and all networks that it names are sent in it. */
+/* True if the segment is a key: not predicted, and all networks that it names are sent in it. */
 static int is_key(const adcgs_chunk_list *list, int segm)
 {
     const adcgs_buffer *const payload = &list->chunk[segm].payload;
@@ -83,7 +83,7 @@ static int is_key(const adcgs_chunk_list *list, int segm)
     return key;
 }
 
-/* The times of a segment, zero where its SEGM ends before them. */
+/* The times of a segment; bytes that its SEGM lacks are zero. */
 static void write_times(adcgs_buffer *out, const adcgs_buffer *segm)
 {
     const size_t there = ADCGS_MIN(segm->size, TIMES);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file From models to chunks, without the checks that keep a writer from writing what decoders have to refuse. */
+/** \file From models to chunks, without the checks of the codec's writer, so that invalid streams can be written. */
 #include "edit.h"
 
 #include "base/digest.h"
@@ -9,7 +9,7 @@
 /** Networks in the stream so far, by id. */
 typedef struct id_table {
     adcgs_chunk_list *list;
-    uint32_t n, extra; /**< those that segments name, and others behind them */
+    uint32_t n, extra; /**< networks that segments name; further ones with the next ids */
     const adcgs_net *net[ADCGS_PLAN_SEGMENTS * ADCGS_ROLES];
 } id_table;
 
@@ -33,7 +33,7 @@ static adcgs_status add_copy(adcgs_chunk_list *list, const char *type, uint32_t 
     return ADCGS_OK;
 }
 
-/* Of a predicted segment those networks get ids that the model before it does not have. */
+/* In a predicted segment only networks that the model before lacks get ids. Returns the number of ids in use before. */
 static uint32_t assign_ids(id_table *table, const adcgs_model *m, adcgs_role_ids *ids)
 {
     const uint32_t before = table->n;
@@ -81,7 +81,7 @@ static adcgs_status add_extra(id_table *table, const adcgs_net *const *nets, uin
     return ADCGS_OK;
 }
 
-/* The network of a role, in the only segment. */
+/* The network of a role; the stream must have exactly one segment. */
 static adcgs_status find_net(const adcgs_plan *plan, const char *name, const adcgs_net **net, adcgs_error *error)
 {
     int role = 0;
@@ -90,10 +90,10 @@ static adcgs_status find_net(const adcgs_plan *plan, const char *name, const adc
     *net = &plan->stream.segments[0].net[role % ADCGS_ROLES];
     if (role < ADCGS_ROLES && (*net)->present && plan->segments == 1)
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": no such network in the only segment", name);
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": no such network, or more than one segment", name);
 }
 
-/* unnamed ROLE N: networks like that one, which no segment names. */
+/* unnamed ROLE N: copies of the network; no segment names them. */
 static adcgs_status add_unnamed(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     const adcgs_net *copies[ADCGS_ROLES];
@@ -107,7 +107,7 @@ static adcgs_status add_unnamed(adcgs_plan *plan, const adcgs_command *c, void *
     return ADCGS_OK;
 }
 
-/* poke ROLE LAYER w|b INDEX VALUE: a network like that one but for a number, which no segment names. */
+/* poke ROLE LAYER w|b INDEX VALUE: a copy of the network with one number changed; no segment names the copy. */
 static adcgs_status add_poked(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     const adcgs_net *net;
@@ -181,12 +181,12 @@ adcgs_status adcgs_plan_compose(adcgs_plan *plan, adcgs_chunk_list *out, adcgs_e
     return add(out, "ENDC", 0, 0, &payload, error);
 }
 
-/* A verb that nobody knows is a misspelling. What a recipe is for is used later. */
+/* An unknown verb is a misspelling. Commands about the recipe (title, covers, violates, expect) are used later. */
 static adcgs_status check_used(const adcgs_recipe *r, adcgs_error *error)
 {
     for (int i = 0; i < r->n; i++)
         if (!r->command[i].used && !adcgs_recipe_is_about(&r->command[i])) {
-            adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": not a command, or not here", r->command[i].word[0]);
+            adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": unknown command, or not allowed here", r->command[i].word[0]);
             return adcgs_command_locate(r, &r->command[i], ADCGS_ERR_USAGE, error);
         }
     return ADCGS_OK;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The models of a recipe: positions, flags, bodies, masks, steps and priors, and values, coded as they are drawn. */
+/** \file The models of a recipe: positions, flags, bodies, masks, steps, priors, and values, coded while they are drawn. */
 #include "plan.h"
 #include "random_model.h"
 
@@ -11,12 +11,12 @@
 
 #include <stdlib.h>
 
-/** One slice being drawn. */
+/** A slice while its values are drawn at random and coded. */
 typedef struct drawing {
     adcgs_plan *plan;
     const adcgs_model *model;
     adcgs_range_enc range;
-    int turn; /**< of the fills that take turns */
+    int turn; /**< counts values, for fills that alternate sign, length or distance */
 } drawing;
 
 static int draw(uint64_t *state, int lo, int hi)
@@ -32,7 +32,7 @@ static void place_code(uint32_t voxel[3], uint64_t code)
         voxel[2 - bit % 3] |= (uint32_t)(code >> bit & 1) << bit / 3;
 }
 
-/* The code of anchor i of n; they ascend with i. */
+/* The Morton code of anchor i of n; codes ascend with i. */
 static uint64_t code_of(adcgs_plan *plan, uint32_t i, uint32_t n, int depth)
 {
     const uint64_t cells = UINT64_C(1) << 3 * depth, half = n / 2;
@@ -85,7 +85,7 @@ static unsigned pick(adcgs_plan *plan, int how, uint32_t i, unsigned all)
 
 /* ---- Bodies ---- */
 
-/* Of an anchor that is not static, which has one from 0 to most; last: the body of the one before. Random ones come in runs. */
+/* The body, 0 to most, of an anchor that is not static; last: the body of the one before. Random bodies come in runs. */
 static int pick_body(adcgs_plan *plan, uint32_t i, int most, int last)
 {
     switch (plan->bodies) {
@@ -128,7 +128,7 @@ static adcgs_status fill_bodies(adcgs_plan *plan, adcgs_model *m, adcgs_error *e
 
 /* ---- Steps and priors ---- */
 
-/* Forms as in the stream: bit 0, one value for all channels; bit 1, the lower half of the number is 0. */
+/* form as in the stream: bit 0, one value for all channels; bit 1, the lower half of the number is 0. */
 static void fill_steps(float *d, int n, int form, double value)
 {
     for (int i = 0; i < n; i++) {
@@ -205,7 +205,7 @@ static int group_index(int group)
     return ADCGS_MIN(group, ADCGS_GROUP_FG);
 }
 
-/* What a picture needs: extents of e^-3.5 to e^-2.5, colours of 0 to 1, lives that may end within the segment; else small. */
+/* For a visible image: extents of e^-3.5 to e^-2.5, colours of 0 to 1, lives that may end within the segment; else small. */
 static int32_t paint(drawing *w, const adcgs_latent_site *site, int c)
 {
     const int channel = site->first + c, sigma = site->group == ADCGS_GROUP_SIGMA;
@@ -218,7 +218,7 @@ static int32_t paint(drawing *w, const adcgs_latent_site *site, int c)
     return (int32_t)(wanted / step - site->mu[c] / 64.0);
 }
 
-/* The index n of a value; the caller limits it to what the code can hold. */
+/* The index n of a value; the caller limits it to the values that can be coded. */
 static int32_t choose(drawing *w, const adcgs_latent_site *site, int c, int shape, int si)
 {
     const int32_t support = adcgs_table_support(shape, si), turn = w->turn++, sign = turn & 1 ? -1 : 1;
@@ -239,7 +239,7 @@ static int32_t choose(drawing *w, const adcgs_latent_site *site, int c, int shap
     }
 }
 
-/** For commands "force": the place, and the value that they leave there. */
+/** For commands "force": the place of a value, and the value after these commands. */
 typedef struct forced {
     const adcgs_latent_site *site;
     int c, shape, si;
@@ -286,7 +286,7 @@ static void draw_site(void *user, const adcgs_latent_site *site)
         if (si > 0) {
             const int32_t most = adcgs_value_max(shape, si);
             f.n = choose(w, site, c, shape, si);
-            adcgs_plan_each(w->plan, "force", force, &f, NULL); /* checked in advance */
+            adcgs_plan_each(w->plan, "force", force, &f, NULL); /* adcgs_plan_draw() has checked the commands */
             f.n = adcgs_clip(f.n, most);
             adcgs_value_enc(&w->range, shape, si, f.n);
         }
@@ -326,7 +326,7 @@ static adcgs_status draw_slices(adcgs_plan *plan, adcgs_model *m, adcgs_drawn_ti
     return status;
 }
 
-/* The anchors of a tier, whose places are known. */
+/* Draws and codes the anchors of a tier, whose positions are set. */
 static adcgs_status draw_tier(adcgs_plan *plan, adcgs_model *m, int tier, adcgs_drawn_tier *out, adcgs_error *error)
 {
     for (uint32_t i = 0; i < m->n; i++) {
@@ -338,7 +338,7 @@ static adcgs_status draw_tier(adcgs_plan *plan, adcgs_model *m, int tier, adcgs_
     return draw_slices(plan, m, out, error);
 }
 
-/* Sort the anchors into tiers and draw these one after the other. */
+/* Distributes the anchors over tiers and draws the tiers one after the other. */
 static adcgs_status draw_tiers(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *out, adcgs_error *error)
 {
     adcgs_model all = adcgs_model_frame(m), part;
@@ -360,7 +360,7 @@ static adcgs_status draw_tiers(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *ou
     return status;
 }
 
-/* The anchors of a model, those of a predicted one beside what is kept, as chunks will have them. */
+/* Draws and codes the anchors of a model; kept: anchors that a predicted model keeps, else NULL. */
 static adcgs_status draw_anchors(adcgs_plan *plan, uint32_t segment, const adcgs_keep *kept, adcgs_error *error)
 {
     adcgs_model *const m = &plan->stream.segments[segment];

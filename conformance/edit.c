@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Commands that change a finished stream, in the order in which the recipe has them. */
+/** \file Commands that change a finished stream, in the order of the recipe. */
 #include "edit.h"
 
 #include <stdio.h>
@@ -7,7 +7,7 @@
 
 typedef struct editor {
     adcgs_chunk_list *list;
-    adcgs_buffer *out;      /**< the stream, once bytes are being changed */
+    adcgs_buffer *out;      /**< the stream, from the first change of bytes on */
     int is_bytes;
     adcgs_script *script;   /**< between "code" and "end" */
     const adcgs_command *code;
@@ -83,7 +83,7 @@ static adcgs_status set_header(editor *e, const adcgs_command *c, adcgs_error *e
     return ADCGS_OK;
 }
 
-/* damage CHUNK header|payload MASK: a checksum that is wrong */
+/* damage CHUNK header|payload MASK: a wrong checksum */
 static adcgs_status damage(editor *e, const adcgs_command *c, adcgs_error *error)
 {
     static const char *const names[] = { "header", "payload", NULL };
@@ -98,7 +98,7 @@ static adcgs_status damage(editor *e, const adcgs_command *c, adcgs_error *error
     return ADCGS_OK;
 }
 
-/* What follows in an insert: header elements, hex=BYTES, text=TEXT, zeros=N, copy=CHUNK */
+/* A further word of an insert: a header element, hex=BYTES, text=TEXT, zeros=N, copy=CHUNK */
 static adcgs_status fill_chunk(editor *e, int at, const char *word, adcgs_error *error)
 {
     adcgs_raw_chunk *const chunk = &e->list->chunk[at];
@@ -121,7 +121,7 @@ static adcgs_status fill_chunk(editor *e, int at, const char *word, adcgs_error 
     }
     if (!adcgs_word_value(word, "copy"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": no such part of a chunk", word);
-    chunk->type[0] ^= 0x80; /* not this one itself */
+    chunk->type[0] ^= 0x80; /* the search must not find this chunk itself */
     status = adcgs_chunk_list_find(e->list, word + 5, &from, error);
     chunk->type[0] ^= 0x80;
     ADCGS_TRY(status);
@@ -194,7 +194,7 @@ static adcgs_status append(editor *e, const adcgs_command *c, adcgs_error *error
     ADCGS_TRY(adcgs_command_words(c, 2, 2, error));
     ADCGS_TRY(find(e, c->word[1], &chunk, error));
     if (!chunk->as_is && (!strcmp(chunk->type, "INDX") || !strcmp(chunk->type, "ENDC"))) {
-        adcgs_buffer scratch; /* so that there is something to append to */
+        adcgs_buffer scratch; /* writing fills the payload to which to append */
         adcgs_buffer_init(&scratch);
         const adcgs_status status = adcgs_chunk_list_write(e->list, &scratch, error);
         adcgs_buffer_clear(&scratch);
@@ -232,7 +232,7 @@ static adcgs_status change_slice(adcgs_slices *s, uint32_t i, const char *word, 
         return ADCGS_OK;
     }
     if (!adcgs_word_value(word, "damage"))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": slices have no such thing", word);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": slices have no such property", word);
     ADCGS_TRY(adcgs_word_int(word + 7, 1, UINT32_MAX, &n, error));
     s->damage[i] = (uint32_t)n;
     return ADCGS_OK;
@@ -281,7 +281,7 @@ static adcgs_status split(editor *e, const adcgs_command *c, adcgs_error *error)
     return status;
 }
 
-/* ---- Sub-streams decision by decision ---- */
+/* ---- Sub-streams, coded decision by decision ---- */
 
 /* code element NAME | slice CHUNK NUMBER | append CHUNK, up to "end" */
 static adcgs_status begin_code(editor *e, const adcgs_command *c, adcgs_error *error)
@@ -329,7 +329,7 @@ static adcgs_status end_code(editor *e, const adcgs_command *c, adcgs_error *err
     adcgs_buffer bytes;
     (void)c;
     if (!e->script)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "end of what?");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "end without code");
     adcgs_buffer_init(&bytes);
     adcgs_status status = adcgs_script_end(e->script, &bytes, error);
     if (status == ADCGS_OK)
@@ -352,7 +352,7 @@ static adcgs_status flip(editor *e, const adcgs_command *c, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/* cut N, cut CHUNK N: so many bytes are left of the stream, or of the chunk, with which it ends; -N: so many less than all */
+/* cut N, cut CHUNK N: N bytes of the stream are left, or of its last chunk, CHUNK; -N: N bytes fewer than all are left */
 static adcgs_status cut(editor *e, const adcgs_command *c, adcgs_error *error)
 {
     adcgs_raw_chunk *chunk;
@@ -369,14 +369,14 @@ static adcgs_status cut(editor *e, const adcgs_command *c, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/* tail HEX: bytes behind the end */
+/* tail HEX: bytes after the end */
 static adcgs_status tail(editor *e, const adcgs_command *c, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_command_words(c, 1, 1, error));
     return adcgs_hex_decode(c->word[1], e->out, error);
 }
 
-/* ---- All of them ---- */
+/* ---- All commands ---- */
 
 static const struct {
     const char *verb;
@@ -401,7 +401,7 @@ static adcgs_status apply(editor *e, adcgs_command *c, adcgs_error *error)
             continue;
         c->used = 1;
         if (!edits[i].is_bytes && e->is_bytes)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "chunks are changed before bytes are");
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "commands that change chunks come before those that change bytes");
         if (edits[i].is_bytes && !e->is_bytes)
             ADCGS_TRY(adcgs_chunk_list_write(e->list, e->out, error));
         e->is_bytes = edits[i].is_bytes;

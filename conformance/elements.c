@@ -18,7 +18,7 @@ typedef struct element_type {
 } element_type;
 
 static const element_type types[] = {
-    /* with their chunk, where the name alone would mean another one */
+    /* qualified by the chunk where the plain name would match another element */
     { "NETW.first_id", ADCGS_ELEMENT_VAR },   { "NETW.networks", ADCGS_ELEMENT_VAR },   { "NETW.width", ADCGS_ELEMENT_VAR },
     { "NETW.values", ADCGS_ELEMENT_BYTES },   { "SEGM.network_id", ADCGS_ELEMENT_VAR }, { "GEOM.positions", ADCGS_ELEMENT_BYTES },
     { "KEEP.modes", ADCGS_ELEMENT_BYTES },
@@ -35,7 +35,7 @@ static const element_type types[] = {
     ADCGS_LIST_POSE(ONE, MANY) ADCGS_LIST_POSE_SHORT(ONE, MANY) ADCGS_LIST_INDEX(ONE, MANY) ADCGS_LIST_ENDC(ONE, MANY)
 };
 
-/** Looking for the n-th element of a name. */
+/** Search for the n-th element of a name. */
 typedef struct search {
     const char *name;
     size_t length;
@@ -76,7 +76,7 @@ static adcgs_status measure(const adcgs_chunk_list *list, adcgs_element *e, adcg
     adcgs_reader_init(&r, payload->data, payload->size);
     r.pos = e->offset;
     if (e->type == ADCGS_ELEMENT_BYTES) {
-        e->bytes = payload->size - e->offset; /* the last element, always */
+        e->bytes = payload->size - e->offset; /* always the last element of its chunk */
     } else if (e->type >= ADCGS_ELEMENT_VAR) {
         const uint32_t value = adcgs_read_varint(&r);
         e->bytes = r.pos - e->offset + (e->type == ADCGS_ELEMENT_TEXT ? value : 0);
@@ -98,7 +98,7 @@ adcgs_status adcgs_element_find(adcgs_chunk_list *list, const char *name, adcgs_
     adcgs_buffer_init(&bytes);
     const adcgs_status status = adcgs_chunk_list_write(list, &bytes, error);
     adcgs_span source = { .next = bytes.data, .left = bytes.size };
-    /* The stream need not be valid; what is found before it goes wrong counts. */
+    /* The stream need not be valid: an element found before the first fault counts. */
     if (status == ADCGS_OK && adcgs_stream_read(&stream, adcgs_span_read, &source, &options, on_element, &s, NULL) == ADCGS_OK)
         adcgs_stream_clear(&stream, NULL);
     adcgs_buffer_clear(&bytes);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a predicted segment of a recipe keeps of the one before: modes and differences. */
+/** \file Kept anchors of the predicted segments of a recipe: modes and differences. */
 #include "plan.h"
 #include "random_model.h"
 
@@ -29,7 +29,7 @@ static adcgs_keep_mode pick_mode(adcgs_plan *plan, uint32_t anchor)
     }
 }
 
-/* The latent behind a difference; turn counts them, so that both signs and all lengths occur. */
+/* The latent after a difference is added. turn counts the differences, so that both signs and all lengths of code occur. */
 static int32_t change(adcgs_plan *plan, int32_t before, int turn)
 {
     const int sign = turn & 1 ? -1 : 1, prefix = turn / 2 % 9;

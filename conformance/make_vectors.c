@@ -11,7 +11,7 @@
 #define VECTORS_MAX 1024
 
 typedef struct maker {
-    const char *source, *directory; /**< of recipes; of what is made */
+    const char *source, *directory; /**< folder of recipes/; folder of vectors/ and the manifest */
     FILE *manifest;
     int n, made, failed;
     char *id[VECTORS_MAX];
@@ -28,7 +28,7 @@ static adcgs_status write_file(const maker *m, const char *id, const adcgs_buffe
     return ADCGS_OK;
 }
 
-/* One vector; its entry goes to the manifest only if all of it is well. */
+/* Makes one vector; its entry goes to the manifest only if every step succeeds. */
 static adcgs_status make(maker *m, const char *id, adcgs_error *error)
 {
     static adcgs_plan plan;
@@ -90,7 +90,7 @@ int main(int argc, char **argv)
     adcgs_error error = { ADCGS_OK, "" };
     if (argc < 3) {
         fprintf(stderr, "usage: make_vectors SOURCE DIR [ID ...]\n"
-                        "SOURCE holds a folder named recipes, DIR one named vectors; all recipes, unless some are named.\n");
+                        "SOURCE holds the folder recipes, DIR the folder vectors. Without ID all recipes are made.\n");
         return 2;
     }
     m.source = argv[1];
@@ -98,7 +98,7 @@ int main(int argc, char **argv)
     snprintf(path, sizeof path, "%s/manifest.json", m.directory);
     m.manifest = fopen(path, "w");
     if (!m.manifest || (argc == 3 && list_recipes(&m) != 0)) {
-        fprintf(stderr, "make_vectors: %s: cannot write, or no recipes in %s\n", path, m.source);
+        fprintf(stderr, "make_vectors: %s: cannot write, or no folder recipes in %s\n", path, m.source);
         return 3;
     }
     for (; m.n < argc - 3; m.n++)

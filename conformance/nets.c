@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The networks of a recipe: shapes and switches, random numbers within limits, numbers that it names. */
+/** \file The networks of a recipe: shapes and switches, random numbers within limits, numbers that the recipe sets. */
 #include "plan.h"
 #include "random_model.h"
 
@@ -17,7 +17,7 @@ typedef struct shape {
     int e, bias_e, mode, bias_mode;
 } shape;
 
-/** For commands about one network: which, and where it is kept. */
+/** For commands about one network: its role, its shape before it has numbers, and the network itself. */
 typedef struct target {
     int role;
     shape *shape;
@@ -25,7 +25,7 @@ typedef struct target {
     uint32_t segment;
 } target;
 
-/* Whether the command, whose first word is a role, is about this network. */
+/* Sets *about if the role in the command's word 1 is that of this network; fails if it is no role. */
 static adcgs_status is_about(const target *t, const adcgs_command *c, int *about, adcgs_error *error)
 {
     *about = strcmp(c->word[1], adcgs_role_name(t->role)) == 0;
@@ -83,10 +83,10 @@ static adcgs_status shape_net(adcgs_plan *plan, const adcgs_command *c, void *us
             m++;
         int64_t value = 0;
         if (m == ADCGS_COUNTOF(members))
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": networks have no such thing", c->word[i]);
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": networks have no such property", c->word[i]);
         const char *const text = adcgs_word_value(c->word[i], members[m].name);
         if (members[m].list && parse_list(text, members[m].list) != ADCGS_OK)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": expected numbers with commas", text);
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": expected numbers separated by commas", text);
         if (members[m].value) {
             ADCGS_TRY(adcgs_word_int(text, -65536, INT32_MAX, &value, error));
             *members[m].value = (int)value;
@@ -129,7 +129,7 @@ static adcgs_status make_net(adcgs_plan *plan, const shape *s, int role, adcgs_n
     return ADCGS_OK;
 }
 
-/* ROLE LAYER w|b behind the verb: the tensor, or NULL if the command is about another network. */
+/* ROLE LAYER w|b after the verb: the tensor, or NULL if the command is about another network. */
 static adcgs_status find_tensor(const target *t, const adcgs_command *c, adcgs_tensor **out, adcgs_error *error)
 {
     int64_t layer;
@@ -143,7 +143,7 @@ static adcgs_status find_tensor(const target *t, const adcgs_command *c, adcgs_t
     return ADCGS_OK;
 }
 
-/* weight ROLE LAYER w|b INDEX|all VALUE; poke takes the same, and +VALUE to add. */
+/* weight ROLE LAYER w|b INDEX|all VALUE; poke takes the same words. +VALUE adds. */
 static adcgs_status set_weight(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     adcgs_tensor *t;
@@ -180,7 +180,7 @@ static adcgs_status set_ramp(adcgs_plan *plan, const adcgs_command *c, void *use
     return ADCGS_OK;
 }
 
-/* bound ROLE LAYER ROW -|+: the bias takes what the bound of the row leaves. */
+/* bound ROLE LAYER ROW -|+: the bias takes the remainder of the row's bound. */
 static adcgs_status set_bound(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     const target *const t = user;
@@ -205,7 +205,7 @@ static adcgs_status set_bound(adcgs_plan *plan, const adcgs_command *c, void *us
     return ADCGS_OK;
 }
 
-/* share ROLE ...|all|none: networks that segments take over from the one before; all unless said otherwise. */
+/* share ROLE ...|all|none: networks that segments take over from the one before; default: all. */
 static adcgs_status find_share(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     target *const t = user;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Settings of a recipe that are numbers, words, cameras and texts. */
+/** \file Settings of a recipe: numbers, words, cameras and texts. */
 #include "plan.h"
 
 #include "stream/syntax.h"
@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Settings that are one or a few numbers, by place and type. */
+/* Settings of one or several numbers, with their place in the plan and their type. */
 static const struct {
     const char *verb;
     int type, count;
@@ -149,7 +149,7 @@ static adcgs_status set_params(adcgs_plan *plan, const adcgs_command *c, void *u
     return ADCGS_OK;
 }
 
-/* Anchors per segment, of predicted ones the new ones; the last number holds for the segments that follow. */
+/* anchors N ...: per segment, in predicted segments new anchors; the last number holds for the remaining segments. */
 static adcgs_status set_anchors(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     int64_t n = 1;
@@ -177,7 +177,7 @@ static adcgs_status set_predicted(adcgs_plan *plan, const adcgs_command *c, void
     return ADCGS_OK;
 }
 
-/* tiers N GROWTH ...: anchors are of the first N in turn, then of any; the last growth holds for those that follow */
+/* tiers N GROWTH ...: the first N anchors are of tiers 0 to N - 1, the others of any; the last growth holds for the rest */
 static adcgs_status set_tiers(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     int64_t n, growth = 0;
@@ -193,7 +193,7 @@ static adcgs_status set_tiers(adcgs_plan *plan, const adcgs_command *c, void *us
     return ADCGS_OK;
 }
 
-/* differences HOW GROUP ...: of these groups, of all without one */
+/* differences HOW GROUP ...: of these groups; of all groups if none is named */
 static adcgs_status set_differences(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     static const char *const changes[] = { "small", "escapes", "clips", NULL };
@@ -289,7 +289,7 @@ static adcgs_status add_stored(adcgs_plan *plan, const adcgs_command *c, void *u
     if (!s->cameras)
         s->cameras = adcgs_alloc(NULL, ADCGS_PLAN_CAMERAS, sizeof *s->cameras, error);
     if (!s->cameras || s->n_cameras == ADCGS_PLAN_CAMERAS)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "no room for a stored camera");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "no memory for a stored camera, or too many of them");
     return parse_camera(c, &s->cameras[s->n_cameras++], error);
 }
 
@@ -301,7 +301,7 @@ static char *copy_text(const char *text, adcgs_error *error)
     return out;
 }
 
-/* KEY VALUE, or KEY times=N VALUE: the value is so many copies. */
+/* KEY VALUE, or KEY times=N VALUE: the entry's text is N copies of VALUE. */
 static adcgs_status add_meta(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     adcgs_stream *const s = &plan->stream;
@@ -316,7 +316,7 @@ static adcgs_status add_meta(adcgs_plan *plan, const adcgs_command *c, void *use
     if (!s->meta)
         s->meta = adcgs_alloc(NULL, ADCGS_PLAN_CAMERAS, sizeof *s->meta, error);
     if (!s->meta || s->n_meta == ADCGS_PLAN_CAMERAS)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "no room for an entry of metadata");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "no memory for an entry of metadata, or too many of them");
     s->meta[s->n_meta].key = copy_text(c->word[1], error);
     char *const text = s->meta[s->n_meta].value = adcgs_alloc(NULL, strlen(value) * (size_t)times + 1, 1, error);
     if (!s->meta[s->n_meta++].key || !text)
@@ -342,7 +342,7 @@ static void set_defaults(adcgs_plan *plan)
     }
 }
 
-/* A view of the cube, and moments that meet both ends and the inside, unless the recipe names its own. */
+/* Unless the recipe names its own: a camera that sees the cube, the start of the stream, and, if it moves, a later time. */
 static void default_views(adcgs_plan *plan)
 {
     static const adcgs_camera front = { .width = 24, .height = 16, .fx = 20, .fy = 20, .cx = 12, .cy = 8, .near_plane = 0.01,

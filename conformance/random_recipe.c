@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Random recipes. Numbers are drawn near the edges of their ranges more often than a uniform choice would. */
+/** \file Random recipes. Numbers at the ends of their ranges occur more often than in a uniform choice. */
 #include "random_recipe.h"
 
 #include "random_model.h"
@@ -8,7 +8,7 @@
 
 #define COUNT(list) ((int)ADCGS_COUNTOF(list))
 
-/** The recipe being written, and what later lines depend on. */
+/** The recipe being written, and choices on which later lines depend. */
 typedef struct writer {
     adcgs_recipe *recipe;
     FILE *text;
@@ -38,13 +38,13 @@ static int draw(writer *w, int lo, int hi)
     return (int)adcgs_random_range(&w->state, lo, hi);
 }
 
-/* One time in n. */
+/* True with probability 1/n. */
 static int once_in(writer *w, int n)
 {
     return draw(w, 1, n) == 1;
 }
 
-/* A number of the range, one time in three an end of it. */
+/* A number of the range; with probability 1/3 one of its ends. */
 static int edgy(writer *w, int lo, int hi)
 {
     return once_in(w, 3) ? (draw(w, 0, 1) ? lo : hi) : draw(w, lo, hi);
@@ -87,7 +87,7 @@ static void write_geometry(writer *w)
         line(w, "origin %d.5 %d %d.25", draw(w, -999, 999), draw(w, -32768, 32768), draw(w, -9, 9));
 }
 
-/* Which segments are predicted, from what; new anchors always find a voxel, and no segment is left without any. */
+/* Anchors and predicted segments. New anchors always find a free voxel, and no segment is left without anchors. */
 static void write_anchors(writer *w)
 {
     static const char *const holds[] = { "all", "refined", "first", "random", "random", "none", "turns" };
@@ -137,7 +137,7 @@ static void write_segments(writer *w)
         line(w, "share %s", draw(w, 0, 2) ? (draw(w, 0, 1) ? "all" : "none") : "E_Sigma F_theta Z E_fg0");
 }
 
-/** What a network yields: priors, other integers, binary32. */
+/** Outputs of a network: priors, other integers, binary32. */
 typedef enum net_form { PRIOR, INTEGERS, BINARY32 } net_form;
 
 static void write_network(writer *w, const char *role, net_form form, int layers_max)
@@ -158,7 +158,7 @@ static void write_network(writer *w, const char *role, net_form form, int layers
         line(w, "net %s e=%d bias_e=%d mode=%d bias_mode=%d", role, draw(w, 5, 12), draw(w, 5, 12), once_in(w, 4), once_in(w, 4));
 }
 
-/* E_fv without inputs has one layer, whatever a line says; so has F_varpi. Their shapes are left alone. */
+/* E_fv (which has one layer if it has no inputs) and F_varpi keep their default shapes. */
 static void write_networks(writer *w)
 {
     static const char *const fg[] = { "E_fg0", "E_fg1", "E_fg2", "E_fg3" };

@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-/** The seed decides everything. text, if not NULL, receives the recipe's lines. */
+/** The recipe depends on the seed only. text, if not NULL, receives its lines. */
 adcgs_status adcgs_random_recipe(adcgs_recipe *out, uint64_t seed, FILE *text, adcgs_error *error);
 
 #endif

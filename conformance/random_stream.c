@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /**
- * \file Random valid streams: decoded in every way that the library has, which all must agree, and taken through the
- * codec's own writer, from which the same models must come back.
+ * \file Random valid streams. The library decodes each in every way, with equal results, and the codec's writer writes it
+ * again, after which the reader must find the same models.
  */
 #include "plan.h"
 #include "random_recipe.h"
@@ -15,7 +15,7 @@
 
 #include <stdlib.h>
 
-/* ---- Everything that a decoder says about a stream, as one digest ---- */
+/* ---- One digest over all results of a decoder for a stream ---- */
 
 static adcgs_status add_trace(adcgs_md5 *md5, const adcgs_buffer *file, adcgs_cpu_level cpu, int threads, int step,
                               adcgs_error *error)
@@ -98,7 +98,7 @@ static adcgs_status check_ways(const adcgs_plan *plan, const adcgs_buffer *file,
         for (size_t i = 0; i < ADCGS_COUNTOF(ways); i++) {
             ADCGS_TRY(digest_of(plan, file, (adcgs_cpu_level)level, ways[i][0], ways[i][1], other, error));
             if (memcmp(first, other, sizeof first))
-                return adcgs_fail(error, ADCGS_ERR_INTERNAL, "%s with %d threads, input in pieces of %d, gives other results",
+                return adcgs_fail(error, ADCGS_ERR_INTERNAL, "%s, %d threads, input in pieces of %d bytes: other results",
                                   adcgs_cpu_name((adcgs_cpu_level)level), ways[i][0], ways[i][1]);
         }
     return ADCGS_OK;
@@ -123,7 +123,7 @@ static adcgs_status same_models(const adcgs_stream *a, const adcgs_stream *b, ad
     return ADCGS_OK;
 }
 
-/* What was read is written, read, and written again: the same models, and the second time the same bytes. */
+/* Reads, writes, reads and writes again: the models must be the same, and both written streams must have the same bytes. */
 static adcgs_status check_writer(const adcgs_buffer *file, adcgs_error *error)
 {
     adcgs_stream a, b;
@@ -139,7 +139,7 @@ static adcgs_status check_writer(const adcgs_buffer *file, adcgs_error *error)
         if (status == ADCGS_OK)
             status = adcgs_stream_write(&b, &second, error);
         if (status == ADCGS_OK && (first.size != second.size || memcmp(first.data, second.data, first.size)))
-            status = adcgs_fail(error, ADCGS_ERR_INTERNAL, "written twice, the stream has other bytes");
+            status = adcgs_fail(error, ADCGS_ERR_INTERNAL, "the stream has other bytes when it is written a second time");
         adcgs_stream_clear(&b, NULL);
     }
     adcgs_stream_clear(&a, NULL);
@@ -203,9 +203,9 @@ int main(int argc, char **argv)
     else if (strcmp(verb, "recipe") == 0 && argc == 3)
         status = use_seed(seed, NULL, stdout, &error);
     else {
-        fprintf(stderr, "usage: random_stream check SEED COUNT   decode in all ways, write and read again\n"
-                        "       random_stream write SEED FILE    the stream\n"
-                        "       random_stream recipe SEED        what it is made from\n");
+        fprintf(stderr, "usage: random_stream check SEED COUNT   decode in every way, write, read again\n"
+                        "       random_stream write SEED FILE    write the stream to FILE\n"
+                        "       random_stream recipe SEED        print its recipe\n");
         return 2;
     }
     if (status != ADCGS_OK)

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define DEPTH_MAX 4 /* recipes that begin with recipes */
+#define DEPTH_MAX 4 /* most levels of recipes that begin with another recipe ("from") */
 
 int adcgs_command_is(const adcgs_command *command, const char *verb)
 {
@@ -29,7 +29,7 @@ adcgs_status adcgs_command_locate(const adcgs_recipe *recipe, const adcgs_comman
         return status;
     const adcgs_error why = *error;
     return adcgs_fail(error, status, "%s, line %d%s: %.160s", recipe->id, command->line,
-                      command->inherited ? " of what it begins with" : "", why.text);
+                      command->inherited ? " of its base recipe" : "", why.text);
 }
 
 adcgs_status adcgs_word_int(const char *word, int64_t lo, int64_t hi, int64_t *value, adcgs_error *error)
@@ -56,7 +56,7 @@ adcgs_status adcgs_word_choice(const char *word, const char *const *names, int *
     for (*value = 0; names[*value]; ++*value)
         if (strcmp(word, names[*value]) == 0)
             return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": no such word", word);
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": unknown word", word);
 }
 
 const char *adcgs_word_value(const char *word, const char *name)

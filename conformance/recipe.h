@@ -2,7 +2,7 @@
 /** \file
  * Recipes: text files, one per vector, of one command per line (README.md
  * describes the language). A recipe that begins with "from" takes over the
- * commands of another one, less those that say what that one is for.
+ * commands of its base recipe, except title, covers, violates and expect.
  */
 #ifndef ADCGS_CONFORMANCE_RECIPE_H
 #define ADCGS_CONFORMANCE_RECIPE_H
@@ -15,9 +15,9 @@ typedef struct adcgs_command {
     char *text;              /**< the line, cut into words */
     int n;                   /**< words; word[0] is the verb */
     char *word[ADCGS_WORDS];
-    int inherited;           /**< stands in the recipe that this one begins with */
+    int inherited;           /**< the line is in the base recipe */
     int line;
-    int used;                /**< somebody knew the verb */
+    int used;                /**< a part of the program has handled the command */
 } adcgs_command;
 
 typedef struct adcgs_recipe {
@@ -32,11 +32,11 @@ adcgs_status adcgs_recipe_read(adcgs_recipe *out, const char *directory, const c
 adcgs_status adcgs_recipe_add(adcgs_recipe *recipe, const char *line, adcgs_error *error);
 void adcgs_recipe_clear(adcgs_recipe *recipe);
 
-/** The command's verb is this one. */
+/** True if the command's verb is this one. */
 int adcgs_command_is(const adcgs_command *command, const char *verb);
-/** It says what the recipe is for, which one that begins with it does not take over. */
+/** True for title, covers, violates and expect, which a recipe does not take over from its base recipe. */
 int adcgs_recipe_is_about(const adcgs_command *command);
-/** ADCGS_ERR_USAGE unless there are lo to hi words behind the verb. */
+/** ADCGS_ERR_USAGE unless lo to hi words follow the verb. */
 adcgs_status adcgs_command_words(const adcgs_command *command, int lo, int hi, adcgs_error *error);
 /** Put recipe and line in front of a message about a command. */
 adcgs_status adcgs_command_locate(const adcgs_recipe *recipe, const adcgs_command *command, adcgs_status status,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /**
- * \file Sub-streams written decision by decision: for numbers that no encoder of ours writes. Adaptive contexts go by
- * names that the recipe chooses; each starts afresh where its name occurs first.
+ * \file Sub-streams written decision by decision: for numbers that our encoder never writes. The recipe names the
+ * adaptive contexts; each starts afresh at the first occurrence of its name.
  */
 #include "edit.h"
 
@@ -41,7 +41,7 @@ void adcgs_script_free(adcgs_script **script)
     *script = NULL;
 }
 
-/* The context NAME, or NAME.INDEX. */
+/* Codes a decision under the context NAME.INDEX, which is created at its first use. */
 static void code_flag(adcgs_script *s, const char *name, int64_t index, int bit)
 {
     char full[sizeof s->contexts[0].name];
@@ -58,7 +58,7 @@ static void code_flag(adcgs_script *s, const char *name, int64_t index, int bit)
     adcgs_adaptive_enc(&s->range, &s->contexts[i].context, bit);
 }
 
-/* n bits, most significant first, in a tree of contexts; returns nothing that is needed. */
+/* Codes n bits, most significant first, in a tree of contexts. */
 static void code_tree(adcgs_script *s, const char *name, int64_t value, int64_t n)
 {
     int64_t node = 1;

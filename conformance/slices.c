@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Chunks FEA0 to FEA4 in parts, and together again. */
+/** \file Splitting chunks FEA0 to FEA4 into slices, and assembling them again. */
 #include "edit.h"
 
 #include "base/digest.h"

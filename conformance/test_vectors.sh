@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The committed vectors are those that the generator makes from the recipes, byte for byte; the manifest is sound (REQ-CONF-001,
-# REQ-CONF-008); the library does what it says, in every way that it can run (REQ-CONF-002, REQ-CONF-003, REQ-CONF-004,
-# REQ-CONF-006, REQ-CONF-009), and so does the decoder when asked from outside (REQ-CONF-012, REQ-CONF-013, REQ-CONF-014); the
-# check of all this would notice if it did not.
+# The committed vectors are those that the generator makes from the recipes, byte for byte. The manifest is valid (REQ-CONF-001,
+# REQ-CONF-008). The library gives the results of the manifest, in every way that it can run (REQ-CONF-002, REQ-CONF-003,
+# REQ-CONF-004, REQ-CONF-006, REQ-CONF-009), and so does the decoder when run as a program (REQ-CONF-012, REQ-CONF-013,
+# REQ-CONF-014). The self-test shows that adcgs-conform detects wrong results.
 set -u
 source=${srcdir:-.}/conformance
 dir=$(mktemp -d) || exit 99
@@ -11,7 +11,7 @@ trap 'rm -rf "$dir"' EXIT
 mkdir "$dir/vectors" || exit 99
 conformance/make_vectors "$source" "$dir" || exit 1
 diff -rq "$dir/vectors" "$source/vectors" && diff -q "$dir/manifest.json" "$source/manifest.json" || {
-    echo "vectors differ; if that is meant: make conformance-update" >&2
+    echo "the vectors differ from their recipes; if this is intended, run make conformance-update" >&2
     exit 1
 }
 if command -v python3 >/dev/null; then
@@ -19,10 +19,10 @@ if command -v python3 >/dev/null; then
 fi
 ./adcgs-conform "$source/manifest.json" --junit "$dir/junit.xml" || exit 1
 cases=$(grep -c '<testcase ' "$dir/junit.xml")
-[ "$cases" -eq "$(ls "$source/vectors" | wc -l)" ] || { echo "the JUnit report has $cases cases" >&2; exit 1; }
+[ "$cases" -eq "$(ls "$source/vectors" | wc -l)" ] || { echo "the JUnit report has $cases cases, not one a vector" >&2; exit 1; }
 ./adcgs-conform --layers --decoder './adcgs-dec {in} --answer {request}' --filter '*layers-wanted*' "$source/manifest.json" || exit 1
 ./adcgs-conform --layers --decoder 'sed /layers/d {request} >{out}.1 && ./adcgs-dec {in} --answer {out}.1' \
-    --filter good-ref-layers-wanted "$source/manifest.json" && { echo "a decoder that leaves out no layers passes" >&2; exit 1; }
+    --filter good-ref-layers-wanted "$source/manifest.json" && { echo "a decoder without layers passes" >&2; exit 1; }
 ./adcgs-conform --self-test "$source/manifest.json" || exit 1
 for some in 'good-unit-*' 'good-seq-*' 'bad-unit-s*' 'unsup-*'; do
     ./adcgs-conform --decoder './adcgs-dec {in} --answer {request}' --filter "$some" "$source/manifest.json" || exit 1
