@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Whether cameras look where their poses say. */
+/** \file Check whether camera poses follow the expected axis convention. */
 #include "stereo/axes.h"
 
 #include "camera/rotation.h"
@@ -8,23 +8,23 @@
 
 #include <math.h>
 
-/* Scenes in order are off by 0.06 of a pixel, where cameras are few and far apart by 0.17; with errors of a pixel, by 1. */
-#define FITS 0.4             /* pixels */
-#define FITS_WELL 0.2        /* so that no other reading is looked at */
-enum { POINTS_LEAST = 100, POINTS_MOST = 4000, VIEWS_MOST = 200 }; /* that are looked at */
-#define SEEN_WELL 0.2        /* share of the points that a camera sees: then all is well; */
-#define SEEN_ENOUGH 0.05     /* so much of what is all around cameras in a room */
-#define SEEN_BETTER 3.0      /* times as many, and */
-#define SEEN_MORE 0.3        /* as many more, as another reading must have */
-enum { MOMENTS = 12 };       /* that pictures are compared of */
-#define MOST_OF 0.9          /* cameras */
-#define AROUND 0.9           /* length of the mean axis: more, and cameras look much the same way, at no one place */
-#define CROSSED 0.2          /* distances of axes from the place that is common to them, over those of the cameras */
-#define ONE_PLACE 0.02       /* how far cameras are apart, over the distance of what they would look at */
+/* Median error of correct poses on test scenes: 0.06 pixels, with few distant cameras 0.17. With pose errors of 1 pixel: 1. */
+#define FITS 0.4             /* pixels: median error of poses that fit the images */
+#define FITS_WELL 0.2        /* pixels: median error below which no other reading is tried */
+enum { POINTS_LEAST = 100, POINTS_MOST = 4000, VIEWS_MOST = 200 }; /* min. and max. number of points; max. number of views */
+#define SEEN_WELL 0.2        /* share of the points that a camera sees on average, from which the given poses are accepted */
+#define SEEN_ENOUGH 0.05     /* share that confirms the given poses; low, since a camera in a room sees few points of it */
+#define SEEN_BETTER 3.0      /* minimum ratio of the share under another reading to the share as given */
+#define SEEN_MORE 0.3        /* minimum increase of that share */
+enum { MOMENTS = 12 };       /* maximum number of frames whose images are compared */
+#define MOST_OF 0.9          /* share of the cameras that must face the common point */
+#define AROUND 0.9           /* length of the mean axis; above it, all cameras look in nearly one direction and share no target */
+#define CROSSED 0.2          /* mean distance of the axes from the common point, relative to the mean distance of the cameras */
+#define ONE_PLACE 0.02       /* spread of the camera centres, relative to the distance of the point that they would look at */
 
 /* ---- Readings ---- */
 
-/** The scene with its training views' poses read so; free views. */
+/** Copies the scene with the poses of its training views converted from `reading`. The caller frees the views. */
 static adcgs_status read_as(adcgs_scene *out, const adcgs_scene *scene, adcgs_reading reading, adcgs_error *error)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -48,7 +48,7 @@ static adcgs_status read_as(adcgs_scene *out, const adcgs_scene *scene, adcgs_re
 
 /* ---- Points ---- */
 
-/** The share of points that a camera sees on the mean. */
+/** Mean share of the points that a camera sees. */
 static double share_seen(const adcgs_scene *scene)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN], views = ADCGS_MIN(n, VIEWS_MOST);
@@ -63,15 +63,15 @@ static double share_seen(const adcgs_scene *scene)
     return (double)seen / ((double)views * points);
 }
 
-/* ---- Places ---- */
+/* ---- Camera placement ---- */
 
-/** Where the cameras are and look. */
+/** Positions and directions of the cameras. */
 typedef struct places {
-    double before;   /**< share of cameras before which the place common to all axes lies */
-    double axis;     /**< length of the mean axis: 1 if all look one way */
-    double distance; /**< mean, of cameras from that place */
-    double crossed;  /**< mean distance of the axes from it, over that */
-    double apart;    /**< mean, of cameras from their middle */
+    double before;   /**< share of the cameras that face the point common to all axes */
+    double axis;     /**< length of the mean axis; 1 if all cameras look in the same direction */
+    double distance; /**< mean distance of the cameras from that point */
+    double crossed;  /**< mean distance of the axes from that point, relative to `distance` */
+    double apart;    /**< mean distance of the cameras from their centroid */
 } places;
 
 static places find_places(const adcgs_scene *scene)
@@ -105,7 +105,7 @@ static places find_places(const adcgs_scene *scene)
     return p;
 }
 
-/** Do cameras stand around something that they look at? */
+/** True if the cameras surround a point that they look at. */
 static int look_in(const places *p)
 {
     return p->before >= MOST_OF && p->axis < AROUND && p->crossed < CROSSED;
@@ -115,21 +115,21 @@ static adcgs_reading judge_places(const places p[ADCGS_READINGS])
 {
     if (look_in(&p[ADCGS_READ_TURNED]) && !look_in(&p[ADCGS_READ_AS_GIVEN]))
         return ADCGS_READ_TURNED;
-    /* On a circle about the world's middle a camera is always the same distance before it. */
+    /* For cameras on a circle around the world origin, the world-to-camera translation is the same for all. */
     for (int r = ADCGS_READ_INVERSE; r < ADCGS_READINGS; r++)
         if (look_in(&p[r]) && p[ADCGS_READ_AS_GIVEN].apart < ONE_PLACE * p[r].distance)
             return (adcgs_reading)r;
     return ADCGS_READ_AS_GIVEN;
 }
 
-/* ---- Pictures ---- */
+/* ---- Images ---- */
 
 int adcgs_stereo_poses_fit(const adcgs_stereo_off *off)
 {
     return off->pairs >= ADCGS_STEREO_PAIRS && off->median < FITS;
 }
 
-/** More cameras fit where some did not fit, or as many much better. */
+/** True if more cameras fit where the old poses do not fit, or as many cameras fit with less than half the error. */
 static int is_better(const adcgs_stereo_off *off, const adcgs_stereo_off *than)
 {
     if (!adcgs_stereo_poses_fit(than))
@@ -137,7 +137,7 @@ static int is_better(const adcgs_stereo_off *off, const adcgs_stereo_off *than)
     return off->pairs >= than->pairs && off->median < 0.5 * than->median;
 }
 
-/** How far poses are off, by pictures of a few moments. */
+/** Measures pose errors from the images of a few frames. */
 static adcgs_status match_pairs(adcgs_stereo_off *out, const adcgs_scene *scene, const places *p, adcgs_pool *pool,
                                 adcgs_error *error)
 {
@@ -155,7 +155,7 @@ static adcgs_status match_pairs(adcgs_stereo_off *out, const adcgs_scene *scene,
     return status;
 }
 
-/* ---- All ---- */
+/* ---- Decision ---- */
 
 static void judge_points(adcgs_axes_doubt *out, const double seen[ADCGS_READINGS])
 {
@@ -191,7 +191,7 @@ static adcgs_status judge(adcgs_axes_doubt *out, const adcgs_scene readings[ADCG
     for (int r = 0; r < ADCGS_READINGS && readings->points.n >= POINTS_LEAST; r++)
         seen[r] = share_seen(&readings[r]);
     judge_points(out, seen);
-    const int vouched = seen[ADCGS_READ_AS_GIVEN] >= SEEN_ENOUGH && off->pairs < ADCGS_STEREO_PAIRS; /* and no picture objects */
+    const int vouched = seen[ADCGS_READ_AS_GIVEN] >= SEEN_ENOUGH && off->pairs < ADCGS_STEREO_PAIRS; /* and no image objects */
     if (out->meant != ADCGS_READ_AS_GIVEN || vouched ||
         (found->n_moments && adcgs_stereo_poses_fit(off) && off->median < FITS_WELL))
         return ADCGS_OK;

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Whether cameras look where their poses say, told before anything is learnt. Two mistakes are common: axes of OpenGL where those
- * of OpenCV are expected, or the other way round, and matrices that take the world to the camera where those back are. What
- * bears witness is, in this order, the scene's points, which cameras must see; its pictures, in which neighbours must show the
- * same; and, where these say nothing, where the cameras are.
+ * Check of the axis convention of camera poses, before training. There are two common mistakes: OpenGL axes where OpenCV axes are
+ * expected (or the reverse), and world-to-camera matrices in place of camera-to-world matrices.
+ * The evidence is used in this order: the scene's points, which cameras must see; the images, in which neighbouring cameras must
+ * show the same content; and, if neither decides, the placement of the cameras.
  */
 #ifndef ADCGS_STEREO_AXES_H
 #define ADCGS_STEREO_AXES_H
 
 #include "stereo/stereo.h"
 
-/** How poses may be meant. The last: what takes the world to cameras whose axes are OpenGL's, in a file of such axes. */
+/** Possible meanings of the poses. The last one: world-to-camera matrices of OpenGL cameras in a file of OpenGL axes. */
 typedef enum adcgs_reading {
     ADCGS_READ_AS_GIVEN,
     ADCGS_READ_TURNED,
@@ -22,17 +22,17 @@ typedef enum adcgs_reading {
 typedef enum adcgs_witness { ADCGS_BY_POINTS, ADCGS_BY_PICTURES, ADCGS_BY_PLACES } adcgs_witness;
 
 typedef struct adcgs_axes_doubt {
-    adcgs_reading meant; /**< as given: nothing speaks against it, and the rest is not set */
+    adcgs_reading meant; /**< ADCGS_READ_AS_GIVEN: no evidence against the poses; the other members are not set */
     adcgs_witness by;
-    double here, there;  /**< by points: the share that a camera sees, as given and as meant */
+    double here, there;  /**< by points: mean share that a camera sees, under the poses as given and as meant */
 } adcgs_axes_doubt;
 
-enum { ADCGS_STEREO_PAIRS = 3 }; /* of cameras, that say something */
+enum { ADCGS_STEREO_PAIRS = 3 }; /* minimum number of camera pairs for a result */
 
-/** Whether there are so many, and matches lie where the poses have them. */
+/** True if there are enough pairs and their matches lie on the epipolar lines. */
 int adcgs_stereo_poses_fit(const adcgs_stereo_off *off);
 
-/** found: of this scene, as its poses are given. Where nothing was matched, it is zero. */
+/** found: result of matching for this scene with its poses as given; zero if nothing was matched. */
 adcgs_status adcgs_axes_doubt_find(adcgs_axes_doubt *out, const adcgs_scene *scene, const adcgs_stereo *found, adcgs_pool *pool,
                                    adcgs_error *error);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Seeds, verdicts, and what is known of a body in the end. */
+/** \file Rigid bodies: seeds, acceptance tests, and the stored result. */
 #include "stereo/bodies.h"
 
 #include "camera/rotation.h"
@@ -13,28 +13,28 @@
 #include <math.h>
 
 enum {
-    SEED_LEAST = 60,    /* points */
-    TRIES = 12,         /* seeds that are followed, at most */
-    VAIN = 8,           /* in a row that are none */
-    REFINEMENTS = 6,    /* of all moments */
+    SEED_LEAST = 60,    /* points: minimum size of a seed and of a body */
+    TRIES = 12,         /* maximum number of seeds that are tracked */
+    VAIN = 8,           /* maximum number of rejected seeds in a row */
+    REFINEMENTS = 6,    /* rounds of refinement over all frames */
     AROUND = 64,
-    KNOWN_LEAST = 4     /* moments at which a body has to be found */
+    KNOWN_LEAST = 4     /* minimum number of frames in which a body is found */
 };
-#define LINK 1.2            /* reaches between points that hang together */
-#define EARLY 0.3           /* by how much less a seed far from the middle of time is worth */
-#define KNOWN_SHARE 0.4     /* of all moments at which a body has to be found */
-#define SHARE_LEAST 0.4     /* of a body's points that have to be where they should be, in the mean of moments */
-#define MOVES_LEAST 2.0     /* pixels that a body has to move */
-#define LIGHT_BETTER 0.08   /* by which pictures have to agree better than if it stood still */
+#define LINK 1.2            /* distance between connected points, in units of the layers' reach */
+#define EARLY 0.3           /* weight reduction of a seed at either end of the time range */
+#define KNOWN_SHARE 0.4     /* minimum share of all frames in which a body is found */
+#define SHARE_LEAST 0.4     /* minimum share of a body's points that match, averaged over frames */
+#define MOVES_LEAST 2.0     /* pixels: minimum motion of a body */
+#define LIGHT_BETTER 0.08   /* minimum gain of image agreement over the body held at one pose */
 
-#define IN_PLACE 0.9        /* of a shadow's points that lie where what is still lies */
-#define TRAVELS 6.0         /* pixels that all of it goes */
-#define TRAVELS_SHARE 0.5   /* of how far its points go in the mean, that all of them go */
-#define BESIDE 4.0          /* pixels about a body in which there is no seed */
-#define LEAP_LEAST 1.5      /* pixels by which a body may be off where it should be if it went on as before */
-#define LEAP 0.9            /* and of its step, in the median */
+#define IN_PLACE 0.9        /* share of a shadow's points that lie on a static surface */
+#define TRAVELS 6.0         /* pixels: travel of the point that moves least, from which the whole body travels */
+#define TRAVELS_SHARE 0.5   /* the same, relative to the mean travel of the points; one of the two suffices */
+#define BESIDE 4.0          /* pixels: distance from a body within which no seed starts */
+#define LEAP_LEAST 1.5      /* pixels: tolerated deviation from constant motion, constant part */
+#define LEAP 0.9            /* part of it that grows with the body's step; the median over frames counts */
 
-/** All that is needed meanwhile. */
+/** Working memory. */
 typedef struct work {
     adcgs_stereo *out;
     adcgs_pool *pool;
@@ -46,7 +46,10 @@ typedef struct work {
 
 /* ---- Seeds ---- */
 
-/** The largest part of any moment, those near the middle of time before others. 0: none is large enough. */
+/**
+ * Finds the largest connected part of any frame, with a preference for frames near the middle of time. Sets *n to 0 if no part is
+ * large enough.
+ */
 static adcgs_status find_seed(work *w, int *moment, uint32_t *part, uint32_t *n, adcgs_error *error)
 {
     double most = 0;
@@ -85,9 +88,9 @@ static adcgs_status plant(work *w, int moment, uint32_t part, adcgs_error *error
     return ADCGS_OK;
 }
 
-/* ---- Verdicts ---- */
+/* ---- Acceptance ---- */
 
-/** Whether a body goes on, most of the time, about as it did before; what is laid on chance leaps. */
+/** True if the body's motion is nearly constant between most frames. Tracks of chance matches jump. */
 static int is_steady(const work *w)
 {
     double off[ADCGS_STEREO_MOMENTS];
@@ -111,7 +114,7 @@ static int is_steady(const work *w)
 
 typedef enum verdict { IS_NONE, IS_STILL, IS_BODY } verdict;
 
-/** How far the point that goes least far goes, from where it is at a moment. */
+/** Travel of the point that moves least, from its position in frame `first`. */
 static double travel(const adcgs_track *t, int n, int first)
 {
     double least = -1;
@@ -127,7 +130,9 @@ static double travel(const adcgs_track *t, int n, int first)
     return sqrt(fmax(least, 0));
 }
 
-/** Whether all of it travels, but lies where what is still is seen most of the time: a shadow, or what something uncovers. */
+/**
+ * True if the whole body travels, but lies on surfaces that are static most of the time: a shadow, or an uncovered background.
+ */
 static int is_shadow(const work *w, int first, double far)
 {
     const adcgs_track *t = &w->t;
@@ -146,7 +151,7 @@ static int is_shadow(const work *w, int first, double far)
     return in_place > IN_PLACE * n && (all > TRAVELS * t->model.pixel || all > TRAVELS_SHARE * far);
 }
 
-/** Whether pictures agree better with a body than if it were always where it is at one moment, whatever the light then is. */
+/** True if the images agree better with the moving body than with the body held at frame `rest`, under any lighting. */
 static int beats_still(const work *w, int rest)
 {
     const adcgs_track *t = &w->t;
@@ -183,9 +188,9 @@ static verdict judge(const work *w)
            beats_still(w, at[known - 1]) && is_steady(w) && !is_shadow(w, at[0], far) ? IS_BODY : IS_NONE;
 }
 
-/* ---- What is known in the end ---- */
+/* ---- Result ---- */
 
-/** No more seeds where the body is, or right beside it, at the moments at which it is known; of what stands still, at all. */
+/** Blocks seeds on and near the body in the frames where it is tracked; for a static body, in all frames. */
 static void exclude(work *w, int still)
 {
     const adcgs_track *t = &w->t;
@@ -216,7 +221,7 @@ static void claim(work *w, adcgs_stereo_body *b, uint8_t number)
         }
 }
 
-/** In terms of a pivot. */
+/** Expresses the motion relative to a pivot. */
 static void set_pose(adcgs_stereo_pose *p, const adcgs_rigid *at, const double pivot[3])
 {
     double pose[12] = { 0 }, there[3];
@@ -228,7 +233,7 @@ static void set_pose(adcgs_stereo_pose *p, const adcgs_rigid *at, const double p
         p->way[a] = there[a] - pivot[a];
 }
 
-/** Between two poses that are known. */
+/** Interpolates between two known poses. */
 static void set_between(adcgs_stereo_pose *p, const adcgs_stereo_pose *a, const adcgs_stereo_pose *b, double share)
 {
     double turn[3], part[4];
@@ -258,7 +263,7 @@ static void fill(work *w, adcgs_stereo_body *b)
     }
 }
 
-/** The nearest matched moment to the middle of time at which it is known. */
+/** The frame with a known pose that is nearest to the middle of time. */
 static int find_rest(const work *w)
 {
     int best = -1;
@@ -307,7 +312,7 @@ static adcgs_status refine(work *w, int start, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** Follow a seed. */
+/** Tracks and judges one seed. */
 static adcgs_status try_seed(work *w, int moment, uint32_t part, verdict *is, adcgs_error *error)
 {
     w->t = (adcgs_track){ .model = { .n = 0 } };
@@ -348,7 +353,7 @@ static adcgs_status find_all(work *w, uint32_t most, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** The largest first. */
+/** Sorts the bodies by size, the largest first. */
 static void sort_bodies(adcgs_stereo *out)
 {
     uint8_t number[ADCGS_BODIES_MAX + 1] = { 0 }, order[ADCGS_BODIES_MAX];

@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Rigid bodies among what moves, one after the other: what hangs together at a moment is followed as if it were rigid, what
- * goes along is taken out, and the rest is looked at again (in the manner of Fischler and Bolles 1981, Random sample consensus,
- * CACM 24, with parts in space in place of random samples). A body that explains too little is dropped: none is better than a
- * wrong one.
+ * Detection of rigid bodies among the dynamic points, one after the other. A connected part of one frame is tracked as if it were
+ * rigid. Points that follow the motion are removed, and the search continues with the rest (in the manner of Fischler and Bolles
+ * 1981, Random sample consensus, CACM 24, with spatial parts in place of random samples). A body that explains too few points is
+ * dropped: no body is better than a wrong one.
  */
 #ifndef ADCGS_STEREO_BODIES_H
 #define ADCGS_STEREO_BODIES_H
 
 #include "stereo/rig.h"
 
-/** Find `most` bodies among what moves of out, mark their points, and set out->n_bodies and out->body. The rig is softened. */
+/**
+ * Finds at most `most` bodies among the moving points of out, marks their points, and sets out->n_bodies and out->body. Softens
+ * the rig's images.
+ */
 adcgs_status adcgs_stereo_find_bodies(adcgs_stereo *out, adcgs_stereo_rig *rig, uint32_t most, adcgs_pool *pool,
                                       adcgs_error *error);
 

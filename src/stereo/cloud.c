@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A hashed grid. */
+/** \file A hashed grid of points. */
 #include "stereo/cloud.h"
 
 #include "camera/vector.h"
@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { AROUND = 64, NORMAL_LEAST = 6 }; /* points that are looked at about one, at most; that tell which way a surface faces */
+enum { AROUND = 64, NORMAL_LEAST = 6 }; /* maximum number of neighbours; minimum number of points for a normal */
 
 static uint32_t number_of(const adcgs_cloud *c, const int64_t cell[3])
 {
@@ -45,7 +45,7 @@ adcgs_status adcgs_cloud_init(adcgs_cloud *c, const adcgs_stereo_point *points, 
         c->first[cell_of(c, points[i].x) + 1]++;
     for (uint32_t k = 0; k <= c->mask; k++)
         c->first[k + 1] += c->first[k];
-    for (uint32_t i = c->used; i-- > 0;) /* from the back, so that each cell's are in order once first[] has come down */
+    for (uint32_t i = c->used; i-- > 0;) /* backwards, so that each cell's points stay in order as first[] is decremented */
         c->at[--c->first[cell_of(c, points[i * stride].x) + 1]] = place_of(points, i * stride);
     for (uint32_t k = 0; k <= c->mask; k++)
         c->first[k] = c->first[k + 1];
@@ -60,7 +60,7 @@ void adcgs_cloud_clear(adcgs_cloud *c)
     *c = (adcgs_cloud){ .p = NULL };
 }
 
-/** Cells about a place, one after the other. */
+/** Iterator over the cells around a position. */
 typedef struct walk {
     int64_t low[3], high[3], cell[3];
 } walk;
@@ -91,12 +91,12 @@ static double distance2(const double x[3], const adcgs_cloud_place *place)
     return adcgs_v3_dot(d, d);
 }
 
-/** What is looked for, and the best so far. */
+/** A query and its best match so far. */
 typedef struct query {
     const double *x;
     const float *rgb;
-    double tint, most; /* no farther, squared, in place alone */
-    double least;      /* squared, with colours; negative: none yet */
+    double tint, most; /* colour weight; bound of the squared distance in space */
+    double least;      /* squared distance with colour; negative: no match yet */
     uint32_t found;
 } query;
 
@@ -120,7 +120,10 @@ static void look_in_cell(const adcgs_cloud *c, const int64_t cell[3], query *q)
     }
 }
 
-/** Squared distance from a place to a cell along one axis; a little less, since places are put into cells by rounded numbers. */
+/**
+ * Squared distance from a position to a cell along one axis. Slightly reduced, because points are assigned to cells with
+ * rounding.
+ */
 static double gap2(const adcgs_cloud *c, double x, int64_t cell)
 {
     const double low = (double)cell * c->edge - x, high = x - (double)(cell + 1) * c->edge;
@@ -135,7 +138,7 @@ double adcgs_cloud_nearest(const adcgs_cloud *c, const double x[3], const float 
     const walk w = walk_about(c, x, reach);
     const int64_t own[3] = { cell_along(c, x[0]), cell_along(c, x[1]), cell_along(c, x[2]) };
     int64_t cell[3];
-    look_in_cell(c, own, &q); /* its best saves most of the others */
+    look_in_cell(c, own, &q); /* its best match prunes most other cells */
     for (cell[2] = w.low[2]; cell[2] <= w.high[2]; cell[2]++) {
         const double gap_z = gap2(c, x[2], cell[2]);
         for (cell[1] = w.low[1]; cell[1] <= w.high[1] && gap_z <= q.most; cell[1]++) {
@@ -164,7 +167,7 @@ uint32_t adcgs_cloud_within(const adcgs_cloud *c, const double x[3], double reac
     return n;
 }
 
-/** The direction in which points spread least. */
+/** Direction of least variance of the points. */
 static void find_normal(const adcgs_cloud *c, const uint32_t *near, uint32_t n, double out[3])
 {
     double mean[3] = { 0, 0, 0 }, spread[9] = { 0 }, v[9];

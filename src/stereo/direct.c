@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Gauss and Newton's steps over three turns and three shifts. */
+/** \file Gauss-Newton steps over three rotations and three translations. */
 #include "stereo/direct.h"
 
 #include "camera/vector.h"
 
 #include <math.h>
 
-enum { ROUNDS = 10, LEAST = 30 /* samples that tell anything */ };
-#define OFF_FIRST 0.20     /* difference of colours that counts half, to begin with */
+enum { ROUNDS = 10, LEAST = 30 /* minimum number of samples */ };
+#define OFF_FIRST 0.20     /* colour difference at which the agreement is one half, in the first round */
 #define OFF_LAST 0.08
 #define OFF_MIDDLE 0.12
 #define DAMPING 1e-3
-#define STIFF 0.05         /* sum of squared colours by which a slope is drawn to 1 */
+#define STIFF 0.05         /* prior of slope 1, as a sum of squared colours */
 #define SLOPE_MOST 3.0
-#define STEP_LEAST 0.01    /* pixels after which no other follows */
-#define STEP_MOST 1.5      /* pixels that a step moves the body's points, about */
+#define STEP_LEAST 0.01    /* pixels: step length at which iteration stops */
+#define STEP_MOST 1.5      /* pixels: maximum step of the body's points, approximately */
 
 int adcgs_sample_take(const adcgs_stereo_camera *c, int moment, const double at[2], adcgs_sample *s)
 {
@@ -35,17 +35,17 @@ int adcgs_sample_take(const adcgs_stereo_camera *c, int moment, const double at[
     return 1;
 }
 
-/** Sums of a pass over points and views. */
+/** Sums of one pass over points and views. */
 typedef struct pass {
-    double off;      /* difference of colours that counts half */
-    int moves;       /* whether a step is wanted: a and b */
+    double off;      /* colour difference at which the agreement is one half */
+    int moves;       /* 1: a step is wanted, so a and b are accumulated */
     double centre[3];
     double a[36], b[6];
     adcgs_gain_sums gains;
     double light, n;
 } pass;
 
-/** How a pixel's place changes as the body turns about the centre and shifts: rows of u and v. */
+/** Jacobian of a pixel position with respect to rotation about the centre and translation: rows u and v. */
 static void derive(const adcgs_stereo_view *v, const double x[3], const double centre[3], double depth, const double at[2],
                    double row[2][6])
 {
@@ -60,7 +60,7 @@ static void derive(const adcgs_stereo_view *v, const double x[3], const double c
     }
 }
 
-/** \return the weight of a sample, off: how much lighter the body should be than it is. */
+/** \return the weight of a sample. off: residual, colour of the body minus colour of the image. */
 static double add_sample(pass *p, const adcgs_sample *s, const float rgb[3], const float gain[3], int side, double trust,
                          double off[3])
 {
@@ -93,7 +93,7 @@ static void add_slope(pass *p, const adcgs_sample *s, const double row[2][6], co
     }
 }
 
-/** What a view shows where a point is, at[2] its place there; 0: nothing that tells. */
+/** Samples the view at a point. at[2]: its pixel position. Returns 0 if the view gives no sample. */
 static int look(const adcgs_moment_views *views, int k, const double x[3], const double normal[3], double at[2], double *depth,
                 adcgs_sample *s)
 {
@@ -123,7 +123,7 @@ static void run(pass *p, const adcgs_body_model *m, const adcgs_moment_views *vi
     }
 }
 
-/** The middle of the body, about which turns and shifts are as independent as can be, and how far its points are from it. */
+/** Centroid of the body, which decouples rotation from translation, and the RMS distance of the points from it. */
 static double find_centre(const adcgs_body_model *m, const adcgs_rigid *at, double centre[3])
 {
     double mean[3] = { 0, 0, 0 }, far = 0;
@@ -137,12 +137,12 @@ static double find_centre(const adcgs_body_model *m, const adcgs_rigid *at, doub
     return sqrt(far);
 }
 
-/** One step. 0: nothing is known, or no more is gained. */
+/** One step. Returns 0 if there are too few samples or the step is negligible. */
 static int step(pass *p, const adcgs_body_model *m, double radius, adcgs_placing *place)
 {
     if (p->n < LEAST)
         return 0;
-    for (int a = 0; a < 6; a++) { /* turns in units of the radius, so that both are damped alike */
+    for (int a = 0; a < 6; a++) { /* rotations are scaled by the radius, so that both are damped equally */
         p->a[7 * a] *= 1 + DAMPING;
         p->a[7 * a] += 1e-9;
     }
@@ -162,7 +162,7 @@ static int step(pass *p, const adcgs_body_model *m, double radius, adcgs_placing
 
 void adcgs_direct_judge(const adcgs_body_model *m, const adcgs_moment_views *views, uint32_t stride, adcgs_placing *place)
 {
-    for (int round = 0; round < 3; round++) { /* gains, and what they leave */
+    for (int round = 0; round < 3; round++) { /* fits the gains, then measures the residual */
         pass p = { .off = OFF_LAST };
         run(&p, m, views, stride, place);
         place->light = p.n > 0 ? p.light / p.n : 0;
@@ -210,9 +210,9 @@ double adcgs_direct_point(const adcgs_body_model *m, uint32_t i, const adcgs_mom
     return sum;
 }
 
-/* ---- Whatever the light ---- */
+/* ---- Lighting-independent agreement ---- */
 
-/** A line from the body's colours to those of the pictures: of a side, of a channel. */
+/** Linear fit from the body's colours to the image's, per side and channel. */
 typedef struct line {
     double n, x, y, xx, xy;
     double slope, offset;
@@ -227,7 +227,7 @@ static void fit_line(line *l)
     l->n = l->x = l->y = l->xx = l->xy = 0;
 }
 
-/** Add what a point shows in a view; 1 / (1 + squared difference), as things are. */
+/** Adds a sample to the fit. Returns 1 / (1 + squared residual) under the current fit. */
 static double add_line(line side[3], const float rgb[3], const adcgs_sample *s)
 {
     double off = 0;

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What moves before a camera that moves, too. */
+/** \file Moving content in front of a moving camera. */
 #include "stereo/film.h"
 
 #include "data/sort.h"
 
 #include <math.h>
 
-enum { SEEN_LEAST = 4 }; /* other pictures that tell what is usual */
-enum { ALIKE_MOST = 128 }; /* velocities that a middle is taken of */
-#define ALIKE_REACH 0.15     /* scene units to them */
-enum { OFF_LEAST = 9, PART_LEAST = 24 }; /* pixels of five by five, and of a thing that moves */
-#define MOVED (22 / 255.0f)  /* that a pixel is off all that is usual about it */
-#define HIDDEN 1.08          /* of the depth there: what is farther is hidden */
+enum { SEEN_LEAST = 4 }; /* minimum number of other images for a background colour */
+enum { ALIKE_MOST = 128 }; /* maximum number of velocities in a median */
+#define ALIKE_REACH 0.15     /* scene units: radius of the velocity median */
+enum { OFF_LEAST = 9, PART_LEAST = 24 }; /* pixels: least number that differ in a 5x5 window; least size of a moving part */
+#define MOVED (22 / 255.0f)  /* minimum difference from all background colours nearby */
+#define HIDDEN 1.08          /* relative to the depth of the surface; points farther away are hidden */
 
-/* ---- Depths of what is still, where none is known ---- */
+/* ---- Filling of static depths ---- */
 
-/** Nearest known inverse depths before and after i along a line, in proportion; 0 without any. */
+/** Interpolates linearly between the nearest known inverse depths before and after i on a line; 0 if there are none. */
 static float between(const float *line, size_t step, int n, int i)
 {
     int a = i, b = i;
@@ -31,7 +31,7 @@ static float between(const float *line, size_t step, int n, int i)
     return (1 - u) * line[(size_t)a * step] + u * line[(size_t)b * step];
 }
 
-/** Inverse depths of a whole picture, [h][w]; 0 where none is known at all. */
+/** Inverse depths of a whole image, [h][w]; 0 if no depth is known. */
 static float *fill(const adcgs_stereo_view *v, const adcgs_depths *d, adcgs_error *error)
 {
     const int w = v->w, h = v->h;
@@ -49,7 +49,7 @@ static float *fill(const adcgs_stereo_view *v, const adcgs_depths *d, adcgs_erro
     return known;
 }
 
-/* ---- What is usual ---- */
+/* ---- Background ---- */
 
 typedef struct showing {
     adcgs_stereo_rig *rig;
@@ -62,7 +62,7 @@ static double distance2(const double a[3], const double b[3])
     return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
 }
 
-/** What others show of a place, the median; 0 if too few see it. */
+/** Median colour of a point in the other images; 0 if too few of them see it. */
 static int usual_at(const showing *s, int own, const double x[3], float rgb[3])
 {
     double values[3][ADCGS_STEREO_CAMERAS];
@@ -120,9 +120,9 @@ adcgs_status adcgs_film_set_usual(adcgs_stereo_rig *rig, const adcgs_depths *dep
     return status;
 }
 
-/* ---- What moves ---- */
+/* ---- Moving parts ---- */
 
-/** How far a pixel is off all that is usual in the three by three about it, by the channel that is off the most. */
+/** Difference of a pixel from the range of background colours in its 3x3 window, in the channel that differs most. */
 static float off_usual(const adcgs_stereo_camera *c, const uint8_t *shown, int px, int py)
 {
     float most = 0;
@@ -140,7 +140,7 @@ static float off_usual(const adcgs_stereo_camera *c, const uint8_t *shown, int p
     return most;
 }
 
-/** 1 where a third of the pixels about are off what is usual, else 0. off: room for [h][w]. */
+/** Marks pixels where at least OFF_LEAST pixels of the 5x5 window differ from the background. off: buffer of [h][w]. */
 static void mark(const adcgs_stereo_camera *c, const uint8_t *shown, uint8_t *off, uint32_t *part)
 {
     const int w = c->view.w, h = c->view.h;
@@ -157,7 +157,7 @@ static void mark(const adcgs_stereo_camera *c, const uint8_t *shown, uint8_t *of
         }
 }
 
-/** Parts that hang together get numbers from 2; those of too few pixels 0. stack: [w h]. \return the next number. */
+/** Labels connected parts from 2; parts with too few pixels become 0. stack: [w h]. \return the next label. */
 static uint32_t number_parts(uint32_t *part, int w, int h, int *stack)
 {
     uint32_t next = 2;
@@ -167,7 +167,7 @@ static uint32_t number_parts(uint32_t *part, int w, int h, int *stack)
             continue;
         stack[n++] = i;
         part[i] = next;
-        while (begin < n) { /* what has been reached stays on the stack */
+        while (begin < n) { /* visited pixels stay on the stack */
             const int p = stack[begin++], x = p % w, y = p / w;
             const int about[4] = { x > 0 ? p - 1 : -1, x < w - 1 ? p + 1 : -1, y > 0 ? p - w : -1, y < h - 1 ? p + w : -1 };
             for (int k = 0; k < 4; k++)
@@ -184,14 +184,14 @@ static uint32_t number_parts(uint32_t *part, int w, int h, int *stack)
     return next;
 }
 
-/** Inverse depth of what is seen below a part, where it stands; 0: it ends with the picture. */
+/** Inverse depth of the surface below a part, on which it stands; 0 if the part reaches the image border. */
 static float stands_on(const uint32_t *part, uint32_t number, const float *inverse, int w, int h)
 {
     int low = -1, n = 0;
     float sum = 0;
     for (int i = w * h - 1; i >= 0 && low < 0; i--)
         low = part[i] == number ? i / w : -1;
-    for (int y = low; y >= ADCGS_MAX(low - 2, 0); y--) /* its lowest rows */
+    for (int y = low; y >= ADCGS_MAX(low - 2, 0); y--) /* the lowest rows of the part */
         for (int x = 0; x < w; x++)
             if (part[y * w + x] == number && y + 2 < h && part[(y + 1) * w + x] != number && inverse[(y + 2) * w + x] > 0) {
                 sum += inverse[(y + 2) * w + x];
@@ -253,9 +253,9 @@ adcgs_status adcgs_film_find_moving(adcgs_stereo_list *list, const adcgs_stereo_
     return status;
 }
 
-/* ---- How fast ---- */
+/* ---- Velocity ---- */
 
-/** Points of moments m - 1 to m + 1 are points[*first .. *end - 1]; *first: where those of the moment before begin. */
+/** Range of the points of frames m - 1 to m + 1: points[*first .. *end - 1]. On entry, *first is the previous start. */
 static void beside(const adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig, int m, uint32_t *first,
                    uint32_t *end)
 {
@@ -266,7 +266,7 @@ static void beside(const adcgs_stereo_point *points, uint32_t n, const adcgs_ste
         ;
 }
 
-/** The middle of the velocities about a place, axis by axis. */
+/** Median of the velocities near a position, per axis. */
 static void middle_about(const adcgs_stereo_point *points, uint32_t n, const double x[3], float velocity[3])
 {
     double values[3][ALIKE_MOST];

@@ -6,20 +6,20 @@
 #include <stdlib.h>
 
 enum { ROUNDS = 6, NEIGHBOURS = 8 };
-#define COLOUR 0.5  /* scene units that a unit of difference in colour is worth */
-#define REACH 0.25  /* scene units, with colours, beyond which there is no match */
+#define COLOUR 0.5  /* scene units per unit of colour difference */
+#define REACH 0.25  /* scene units, including the colour term: maximum distance of a match */
 
-/** A point where it can be found. */
+/** A point in a sorted list. */
 typedef struct place {
     double x[3];
     float rgb[3];
     uint32_t i;
 } place;
 
-/** Points of one moment. */
+/** Points of one frame. */
 typedef struct layer {
     adcgs_stereo_point *p;
-    place *sorted; /* [n] ascending in x, so that what is too far away along it need not be looked at */
+    place *sorted; /* [n] ascending in x, so that a search can stop early */
     uint32_t n;
 } layer;
 
@@ -47,11 +47,11 @@ static void sort_layer(layer *l)
     qsort(l->sorted, l->n, sizeof *l->sorted, by_x);
 }
 
-/** Outwards from a place along x, by turns. */
+/** Iterator outwards from a position along x, to both sides. */
 typedef struct walk {
     const layer *l;
     double x;
-    uint32_t below, above; /* sorted[0..below-1] and sorted[above..n-1] were not looked at yet */
+    uint32_t below, above; /* sorted[0..below-1] and sorted[above..n-1] are not visited yet */
 } walk;
 
 static walk walk_from(const layer *l, double x)
@@ -67,7 +67,7 @@ static walk walk_from(const layer *l, double x)
     return (walk){ l, x, low, low };
 }
 
-/** The next along x, NULL if none is nearer than the root of least. */
+/** The next point along x, or NULL if none is nearer than sqrt(least). */
 static const place *walk_on(walk *w, double least)
 {
     const place *low = w->below > 0 ? &w->l->sorted[w->below - 1] : NULL;
@@ -83,13 +83,13 @@ static const place *walk_on(walk *w, double least)
     return down * down < least ? low : NULL;
 }
 
-/** The nearest of a layer to a moved point. *found: one that may be near, if it is less than to->n. */
+/** Nearest point of a layer to a displaced point. *found: a candidate if less than to->n. */
 static int nearest(const layer *to, const adcgs_stereo_point *p, const double move[3], uint32_t *found)
 {
     const double x[3] = { p->x[0] + move[0], p->x[1] + move[1], p->x[2] + move[2] };
     double least = REACH * REACH;
     int any = 0;
-    if (*found < to->n) { /* the bound that it sets saves most of the others */
+    if (*found < to->n) { /* the candidate's distance prunes most others */
         const double d = distance2(x, p->rgb, to->p[*found].x, to->p[*found].rgb);
         any = d < least;
         least = fmin(d, least);
@@ -106,7 +106,7 @@ static int nearest(const layer *to, const adcgs_stereo_point *p, const double mo
     return any;
 }
 
-/** Neighbours of each point within its layer, itself first. */
+/** Neighbours of each point in its layer, the point itself first. */
 static void find_neighbours(const layer *l, uint32_t (*near)[NEIGHBOURS])
 {
     for (uint32_t i = 0; i < l->n; i++) {
@@ -131,7 +131,10 @@ static void find_neighbours(const layer *l, uint32_t (*near)[NEIGHBOURS])
     }
 }
 
-/** Displacements of the points of one layer onto another: raw by the nearest, then the mean of neighbours, and again. */
+/**
+ * Displacements of one layer's points onto another layer, iterated: nearest match of each point, then the mean over its
+ * neighbours.
+ */
 static void lay(const layer *from, const layer *to, double (*move)[3], double (*raw)[3], uint8_t *known,
                 uint32_t *match, uint32_t (*near)[NEIGHBOURS])
 {
@@ -191,7 +194,7 @@ static void follow_layer(layer *l, const layer *before, const layer *after, cons
             l->p[i].velocity[a] /= (float)ADCGS_MAX(s->times[i], 1);
 }
 
-/** The layer that begins there, and ends where t changes. */
+/** The layer that starts at `begin` and ends where t changes. */
 static layer layer_at(adcgs_stereo_point *points, place *sorted, uint32_t n, uint32_t begin)
 {
     uint32_t end = begin;

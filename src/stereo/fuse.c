@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Agreement between views. */
+/** \file Consistency of depths between views. */
 #include "stereo/fuse.h"
 
 #include <math.h>
 
-enum { AGREE_STRONG = 2, AGREE_WEAK = 3 }; /* other views that have to find the same */
-#define SAME 1.0   /* planes between what is the same */
+enum { AGREE_STRONG = 2, AGREE_WEAK = 3 }; /* other views that must confirm a strong or weak depth */
+#define SAME 1.0   /* tolerance of equal depths, in planes */
 #define BEHIND 3.0
 
 adcgs_status adcgs_stereo_list_add(adcgs_stereo_list *list, const adcgs_stereo_point *point, adcgs_error *error)
@@ -63,7 +63,7 @@ float adcgs_stereo_detail(const adcgs_stereo_view *v, int px, int py)
     return (most - least) / 3;
 }
 
-/** The point of a pixel of depths[own], in the mean of those that agree; 0 if too few do. */
+/** Sets the point of a pixel of depths[own] to the mean over the confirming views. Returns 0 if there are too few. */
 static int confirm(adcgs_stereo_point *p, const adcgs_depths *depths, int n, int own, int px, int py)
 {
     const adcgs_depths *d = &depths[own];
@@ -95,7 +95,7 @@ static int confirm(adcgs_stereo_point *p, const adcgs_depths *depths, int n, int
     return 1;
 }
 
-/** Of one view. good: [h][w] receives the quality of its depths. */
+/** Fuses one view. good: [h][w] receives the quality of its depths. */
 static adcgs_status fuse_one(adcgs_stereo_list *list, const adcgs_depths *depths, int n, int own, const uint8_t *wanted,
                              const adcgs_stereo_point *like, uint8_t *good, adcgs_error *error)
 {
@@ -120,8 +120,8 @@ adcgs_status adcgs_fuse(adcgs_stereo_list *list, adcgs_depths *depths, int n, co
         good[i] = adcgs_alloc(NULL, (size_t)depths[i].w * (size_t)depths[i].h, 1, error);
         status = good[i] ? fuse_one(list, depths, n, i, wanted[i], like, good[i], error) : adcgs_alloc_status(error);
     }
-    for (int i = 0; i < n; i++) { /* only now: no view's verdict may depend on the order */
-        if (status == ADCGS_OK && depths[i].quality) /* none of a view that is not matched */
+    for (int i = 0; i < n; i++) { /* after all views, so that no result depends on their order */
+        if (status == ADCGS_OK && depths[i].quality) /* views without matching have no quality map */
             memcpy(depths[i].quality, good[i], (size_t)depths[i].w * (size_t)depths[i].h);
         adcgs_free(NULL, good[i]);
     }

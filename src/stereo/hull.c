@@ -1,33 +1,33 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Silhouettes, cubes, and who sees what. */
+/** \file Silhouettes, cubes, and visibility. */
 #include "stereo/hull.h"
 
 #include <math.h>
 
 enum {
-    VIEWS_LEAST = 3,     /* that have a place in their picture: two say too little */
-    DEEPEST = 12,        /* halvings of the first cube */
-    POINTS_MOST = 400000 /* of a surface: what is left of a first cube that is nearly full says nothing */
+    VIEWS_LEAST = 3,     /* minimum number of views that contain a cube; two views constrain it too little */
+    DEEPEST = 12,        /* maximum number of halvings of the first cube */
+    POINTS_MOST = 400000 /* maximum number of surface points; a hull that nearly fills the first cube gives no information */
 };
 #define REACH 2.0   /* scene units: half an edge of the first cube */
-#define CLOSED 2.0f /* pixels: holes and gaps of silhouettes that are closed */
-#define WELL_IN 3.0 /* pixels from the edge of a silhouette where nothing of what is behind shines in */
+#define CLOSED 2.0f /* pixels: radius of the closing of silhouettes */
+#define WELL_IN 3.0 /* pixels from the silhouette's edge beyond which no background shines through */
 
-/** Silhouettes of n views as distances to their edges, in pixels, and the depths of what each sees first. */
+/** Silhouettes of n views as distances to their edges, in pixels, and depth maps of the visible surface. */
 typedef struct hull {
     int n;
     const adcgs_stereo_view *views;
-    float *inside[ADCGS_STEREO_CAMERAS];  /**< [h][w] greater than 0 within the silhouette */
+    float *inside[ADCGS_STEREO_CAMERAS];  /**< [h][w] greater than 0 inside the silhouette */
     float *nearest[ADCGS_STEREO_CAMERAS]; /**< [h][w] depth */
     adcgs_stereo_list surface;
 } hull;
 
-/** What the views say of a cube. */
+/** Classification of a cube by the views. */
 typedef enum content { EMPTY, FULL, MIXED } content;
 
 /* ---- Silhouettes ---- */
 
-/** Lower one distance to what the neighbours' say. */
+/** Lowers one distance to the values that its neighbours imply. */
 static void relax(float *d, int w, int x, int y, int h, int step)
 {
     static const int across[4] = { -1, 0, 1, -1 }, down[4] = { -1, -1, -1, 0 };
@@ -50,7 +50,7 @@ static void spread(float *d, int w, int h)
             relax(d, w, x, y, h, -1);
 }
 
-/** Distances in a silhouette, negative without, its holes and gaps closed. scratch: [h][w] */
+/** Signed distances to the silhouette's edge, positive inside, after closing of holes and gaps. scratch: [h][w] */
 static void measure(float *inside, float *scratch, const uint8_t *moves, int w, int h)
 {
     const int n = w * h;
@@ -95,8 +95,8 @@ static adcgs_status hull_init(hull *o, const adcgs_stereo_view *views, const uin
 /* ---- Cubes ---- */
 
 /**
- * Of a cube, half of whose edge is given. *pixel: edge of one that would be a pixel in who sees it nearest, 0 if none has it in
- * its picture.
+ * Classifies a cube of half edge `half`. *pixel: edge of a cube that covers one pixel in the nearest view; 0 if no image contains
+ * it.
  */
 static content ask(const hull *o, const double x[3], double half, double *pixel)
 {
@@ -106,8 +106,8 @@ static content ask(const hull *o, const double x[3], double half, double *pixel)
         const adcgs_stereo_view *v = &o->views[i];
         double at[2] = { 0, 0 }, depth;
         const int in_picture = adcgs_stereo_rig_project(v, x, at, &depth);
-        const double around = 1.7320508 * half; /* of the ball about the cube */
-        if (depth <= 2 * around) { /* about the camera, or behind it */
+        const double around = 1.7320508 * half; /* radius of the circumscribed sphere */
+        if (depth <= 2 * around) { /* the sphere encloses the camera or lies behind it */
             mixed += depth > -around;
             seen += depth > -around;
             continue;
@@ -129,7 +129,7 @@ static content ask(const hull *o, const double x[3], double half, double *pixel)
     return seen < ADCGS_MIN(VIEWS_LEAST, o->n) ? EMPTY : mixed ? MIXED : FULL;
 }
 
-/** Whether all that have a place in their picture have it within their silhouette, and enough do. */
+/** True if the point lies inside the silhouette of every image that contains it, and enough images do. */
 static int is_within(const hull *o, const double x[3])
 {
     int seen = 0;
@@ -144,7 +144,7 @@ static int is_within(const hull *o, const double x[3])
     return seen >= ADCGS_MIN(VIEWS_LEAST, o->n);
 }
 
-/** Halve a cube until what is left is a pixel of the surface. */
+/** Halves a cube until its parts are surface pixels. */
 static adcgs_status halve(hull *o, const double x[3], double half, int depth, adcgs_error *error)
 {
     double pixel;
@@ -162,9 +162,9 @@ static adcgs_status halve(hull *o, const double x[3], double half, int depth, ad
     return ADCGS_OK;
 }
 
-/* ---- Who sees what ---- */
+/* ---- Visibility ---- */
 
-/** A cube of the surface hides what is behind it in a view: in the pixels about it, so that no gap lets through. */
+/** Lowers the depth map of a view under a surface cube. The footprint is enlarged, so that there are no gaps. */
 static void hide(const adcgs_stereo_view *v, float *nearest, const adcgs_stereo_point *p)
 {
     double at[2], depth;
@@ -178,7 +178,7 @@ static void hide(const adcgs_stereo_view *v, float *nearest, const adcgs_stereo_
             nearest[b * v->w + a] = fminf(nearest[b * v->w + a], (float)depth);
 }
 
-/** The look of a point in the view that sees it farthest from a silhouette's edge; 0 if none sees it. */
+/** Sets the appearance of a point from the view in which it is farthest from the silhouette's edge; 0 if no view sees it. */
 static int dress(const hull *o, adcgs_stereo_point *p)
 {
     const double thick = 3 * (double)p->size;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What moves, in cells. */
+/** \file Grids of the moving points. */
 #include "stereo/layers.h"
 
 #include "data/sort.h"
@@ -8,10 +8,10 @@
 #include <math.h>
 
 enum { AROUND = 64, FEW = 500, SAMPLES = 4096, TEN = 10 };
-#define CELL 3.0      /* pixels: of cells in which all points are */
-#define CELL_FEW 14.0 /* of those in which few are */
+#define CELL 3.0      /* pixels: cell size of the full grid */
+#define CELL_FEW 14.0 /* pixels: cell size of the sparse grid */
 
-/** The median of pixels' sizes. */
+/** Median of the points' pixel sizes. */
 static adcgs_status find_pixel(adcgs_layers *l, uint32_t n, adcgs_error *error)
 {
     const uint32_t stride = n / SAMPLES + 1;
@@ -27,7 +27,7 @@ static adcgs_status find_pixel(adcgs_layers *l, uint32_t n, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** A reach within which, in the mean, ten points are; and what serves as a pixel if that is far. */
+/** Radius that contains ten points on average. A large radius also enlarges the pixel size. */
 static void find_reach(adcgs_layers *l)
 {
     uint32_t near[AROUND];
@@ -43,7 +43,7 @@ static void find_reach(adcgs_layers *l)
     l->pixel = fmax(pixel, 0.4 * l->reach);
 }
 
-/** The softened colour of the view that shows most nearly what the point has: that in which it was found, or one like it. */
+/** Sets the colour from the softened image closest to the point's own colour: its source view, or a similar one. */
 static void recolour(adcgs_stereo_point *p, const float normal[3], const adcgs_moment_views *views)
 {
     const double n[3] = { (double)normal[0], (double)normal[1], (double)normal[2] };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What moves, moment by moment, as bodies are looked for in it: in cells, with normals. */
+/** \file Moving points per frame, in grids and with normals, for the detection of rigid bodies. */
 #ifndef ADCGS_STEREO_LAYERS_H
 #define ADCGS_STEREO_LAYERS_H
 
@@ -8,15 +8,15 @@
 typedef struct adcgs_layers {
     const adcgs_stereo_rig *rig;
     int n;
-    double pixel, reach;      /**< scene units: of a pixel, or more if points are sparse; ten of them are about as near */
+    double pixel, reach;      /**< scene units: pixel size, larger if points are sparse; radius with ten points on average */
     uint32_t begin[ADCGS_STEREO_MOMENTS + 1];
     adcgs_cloud all[ADCGS_STEREO_MOMENTS], few[ADCGS_STEREO_MOMENTS];
     adcgs_moment_views views[ADCGS_STEREO_MOMENTS];
-    adcgs_stereo_point *p;    /**< [begin[n]] with colours of the softened pictures */
+    adcgs_stereo_point *p;    /**< [begin[n]] with colours of the softened images */
     float (*normal)[3];       /**< [begin[n]] */
 } adcgs_layers;
 
-/** Of the moving points; rig: softened. To be cleared in any case. */
+/** Builds the layers of the moving points. rig: softened. The caller clears the layers, after a failure too. */
 adcgs_status adcgs_layers_init(adcgs_layers *layers, const adcgs_stereo *stereo, const adcgs_stereo_rig *rig, adcgs_error *error);
 void adcgs_layers_clear(adcgs_layers *layers);
 

@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How long points stay as they go. */
+/** \file Lifetimes of moving points. */
 #include "config.h"
 
 #include "stereo/lives.h"
 
 #include <math.h>
 
-enum { REACH = 3, OFF_LEAST = 3, PART = 256 }; /* moments; of nine pixels; points of a job */
-#define USUAL_SHARE 0.8 /* of the cameras that have the place in their pictures */
+enum { REACH = 3, OFF_LEAST = 3, PART = 256 }; /* frames to search; pixels of a 3x3 window that differ; points per job */
+#define USUAL_SHARE 0.8 /* share of the cameras that see the place and must show the background */
 
 typedef struct job {
     adcgs_stereo_point *points;
     uint32_t n;
     const adcgs_stereo_rig *rig;
-    const adcgs_depths *still; /* of each camera that has what it usually shows, in order */
+    const adcgs_depths *still; /* for each camera with a background, in order */
 } job;
 
-/** Whether a camera shows what it usually does about a pixel. */
+/** True if a camera shows its background around a pixel. */
 static int shows_usual(const adcgs_stereo_camera *c, int moment, int px, int py)
 {
     int off = 0;
@@ -28,7 +28,7 @@ static int shows_usual(const adcgs_stereo_camera *c, int moment, int px, int py)
     return off < OFF_LEAST;
 }
 
-/** Whether a place would hide what most cameras show at a moment. */
+/** True if a point at this position would hide the background that most cameras show in the frame. */
 static int is_gone(const job *j, int moment, const double x[3])
 {
     int seen = 0, usual = 0, map = 0;
@@ -47,7 +47,7 @@ static int is_gone(const job *j, int moment, const double x[3])
     return usual >= 2 && usual >= USUAL_SHARE * seen;
 }
 
-/** How long it is from the point's moment to an end, going by steps of 1 or -1; 0: there is none near. */
+/** Time from the point's frame to its end, in direction `step` (1 or -1); 0 if there is no end in range. */
 static float end_of(const job *j, const adcgs_stereo_point *p, int moment, int step)
 {
     const adcgs_stereo_rig *rig = j->rig;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * How long what matching found at a moment stays as it goes: a point that were still there a moment on, along its way, would hide
- * what pictures usually show. Where most cameras show just that, it has ended: it is gone, or went elsewhere.
+ * Lifetimes of matched moving points. A point is extrapolated along its velocity to adjacent frames. If most cameras show the
+ * background there, the point has ended: the object is gone or has changed its path.
  */
 #ifndef ADCGS_STEREO_LIVES_H
 #define ADCGS_STEREO_LIVES_H
@@ -11,8 +11,8 @@
 #include "stereo/rig.h"
 
 /**
- * Set the ends of points that move, whose velocities are known, before cameras that stay. still: of each camera that usually
- * shows something, in their order, depths of that; who sees it before a place says nothing of it.
+ * Sets the ends of moving points with known velocities, for static cameras. still: static depths of each camera with a
+ * background, in order. A camera with a static surface in front of the point has no vote.
  */
 void adcgs_stereo_find_ends(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig,
                             const adcgs_depths *still, adcgs_pool *pool);

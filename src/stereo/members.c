@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Points that join a body, and those that leave it. */
+/** \file Points that join or leave a body. */
 #include "stereo/members.h"
 
 #include "stereo/direct.h"
@@ -7,14 +7,17 @@
 
 enum {
     BODY_MOST = 6000, /* points */
-    HOPS = 6,         /* steps of reach by which a body grows at a moment */
-    SURE = 3,         /* moments after which a point is dropped */
+    HOPS = 6,         /* maximum number of growth steps per frame, each of length reach */
+    SURE = 3,         /* frames in which a point must be seen before it can be dropped */
     AROUND = 32
 };
-#define KEEP 0.45 /* of the moments at which it is seen that a point has to be where it should be */
-#define FITS 0.5  /* agreement of pictures with a point that is where it should be, though it was not found again */
+#define KEEP 0.45 /* minimum share of the frames with a match, among those in which the point is seen */
+#define FITS 0.5  /* image agreement that counts as a match, if no matching point is found */
 
-/** Count where points are seen and where they should be. mark: [n] those of the moment that are the body's; may be NULL. */
+/**
+ * Counts sightings and matches of the body's points in a frame. mark: [n] the frame's points that belong to the body; may be
+ * NULL.
+ */
 static void count(adcgs_track *t, const adcgs_layers *l, int moment, uint8_t *mark)
 {
     for (uint32_t i = 0; i < t->model.n; i++) {
@@ -42,7 +45,7 @@ static void drop(adcgs_body_model *m, int sure)
     m->n = n;
 }
 
-/** Mark what hangs together with what is marked. */
+/** Marks the points connected to marked points. */
 static void spread(const adcgs_cloud *c, double reach, uint8_t *mark)
 {
     uint32_t near[AROUND];
@@ -57,7 +60,7 @@ static void spread(const adcgs_cloud *c, double reach, uint8_t *mark)
         }
 }
 
-/** Add a moment's point to the body at rest. */
+/** Adds a frame's point to the body's rest pose. */
 static adcgs_status add_point(adcgs_track *t, const adcgs_layers *l, int moment, uint32_t i, const adcgs_rigid *back,
                               const adcgs_cloud *own, adcgs_error *error)
 {
@@ -93,7 +96,7 @@ adcgs_status adcgs_members_grow(adcgs_track *t, const adcgs_layers *l, int momen
     for (uint32_t i = 0; i < c->n && status == ADCGS_OK; i++)
         if (mark[i]) {
             status = add_point(t, l, moment, i, &back, &own, error);
-            own.p = t->model.p; /* it may have moved */
+            own.p = t->model.p; /* the array may have been reallocated */
         }
     adcgs_cloud_clear(&own);
     adcgs_free(NULL, mark);

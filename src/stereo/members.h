@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Which points are part of a body that is followed: what hangs together with it joins, and leaves again if it proves not to go
- * along.
+ * Membership of points in a tracked body. Connected points join the body; points that do not follow its motion leave it.
  */
 #ifndef ADCGS_STEREO_MEMBERS_H
 #define ADCGS_STEREO_MEMBERS_H
 
 #include "stereo/track.h"
 
-/** Drop what did not go along so far, then add what hangs together with the body at a moment at which it is known. */
+/** Drops points that have not followed the motion so far, then adds points connected to the body in a frame with a known pose. */
 adcgs_status adcgs_members_grow(adcgs_track *track, const adcgs_layers *layers, int moment, adcgs_error *error);
 
-/** Drop points that are seldom where they should be. */
+/** Drops points that seldom match. */
 void adcgs_members_clean(adcgs_track *track, const adcgs_layers *layers);
 
 #endif

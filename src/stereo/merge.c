@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Cells at rest. */
+/** \file Grid cells in the rest pose. */
 #include "stereo/merge.h"
 
 #include "camera/vector.h"
@@ -8,11 +8,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { LEAST = 60, AROUND = 48, MEET = 6 /* points that tell a surface */ };
-#define EDGE 1.2    /* pixels: of a cell */
-#define SMOOTH 2.5  /* pixels about a point over which it is smoothed */
+enum { LEAST = 60, AROUND = 48, MEET = 6 /* minimum number of points for smoothing */ };
+#define EDGE 1.2    /* pixels: size of a cell */
+#define SMOOTH 2.5  /* pixels: radius of smoothing */
 
-/** A moment's point at rest. */
+/** A frame's point, transformed to the rest pose. */
 typedef struct entry {
     uint64_t cell;
     int moment;
@@ -33,7 +33,7 @@ static int by_cell(const void *a, const void *b)
     return 0;
 }
 
-/** A moment's point, if it is the body's: where something of its colour is. */
+/** Transforms a frame's point to the rest pose. Returns 1 if the body has a similar point there. */
 static int set_entry(entry *e, const adcgs_track *t, const adcgs_layers *l, const adcgs_cloud *own, int moment, uint32_t i,
                      const adcgs_rigid *back)
 {
@@ -58,7 +58,7 @@ static int set_entry(entry *e, const adcgs_track *t, const adcgs_layers *l, cons
     return adcgs_body_near(&t->model, own, e->x, e->rgb, &near);
 }
 
-/** Mean of those of a cell; 0 if they are of one moment. */
+/** Mean of a cell's entries. Returns 0 if they are all of one frame. */
 static int mean_of(const entry *e, uint32_t n, adcgs_stereo_point *p, float normal[3])
 {
     *p = (adcgs_stereo_point){ .t = 0.5f, .moves = 1 };
@@ -90,7 +90,7 @@ static adcgs_status gather(const entry *e, uint32_t n, adcgs_body_model *to, adc
     return ADCGS_OK;
 }
 
-/** Along its normal to the mean of those about it that face the same way. */
+/** Moves a point along its normal to the mean of its neighbours with similar normals. */
 static void smooth_point(const adcgs_body_model *m, const adcgs_cloud *own, uint32_t i, double out[3])
 {
     uint32_t near[AROUND], met = 0;

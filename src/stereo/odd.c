@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Cameras whose poses cannot be right. */
+/** \file Detection of cameras with a wrong pose. */
 #include "stereo/odd.h"
 
 #include "data/sort.h"
@@ -8,44 +8,44 @@
 
 #include <math.h>
 
-enum { SOURCES = 6 };        /* cameras whose points are looked for in one's picture, the nearest */
-enum { REACH = 12 };         /* pixels */
-enum { ANYWHERE = 640 };     /* points that are looked for in the whole picture, about */
-enum { SIGHTS_FEW = 6 };     /* that tell whether a camera is where it is said to be, and */
-enum { SIGHTS_LEAST = 16 };  /* where it is instead */
-enum { WELL_LEAST = 4 };     /* cameras, and */
-#define WELL_SHARE 0.6       /* of all, that agree: else it is not one that is odd */
-#define AXES_ALIKE 0.6       /* cosine between axes of cameras that are compared */
-#define APART 0.005          /* scene units between them */
-#define FITS 1.0             /* pixels that a point is off, if it fits */
-#define OFF 0.7              /* pixels that a camera is off, at least, and */
-#define TIMES_USUAL 4.0      /* as many times as is usual */
-#define BETTER 2.0           /* times as many points as fit as it is that fit otherwise */
+enum { SOURCES = 6 };        /* maximum number of source cameras per camera, the nearest first */
+enum { REACH = 12 };         /* pixels: search radius around a point's expected position */
+enum { ANYWHERE = 640 };     /* approximate number of points for the search over the whole image */
+enum { SIGHTS_FEW = 6 };     /* minimum number of correspondences to check a given pose */
+enum { SIGHTS_LEAST = 16 };  /* minimum number of correspondences to report another pose */
+enum { WELL_LEAST = 4 };     /* minimum number of cameras whose pose is confirmed */
+#define WELL_SHARE 0.6       /* minimum share of them; otherwise no single camera is at fault */
+#define AXES_ALIKE 0.6       /* cosine: minimum alignment of the axes of compared cameras */
+#define APART 0.005          /* scene units: minimum distance between them */
+#define FITS 1.0             /* pixels: maximum reprojection error of an inlier */
+#define OFF 0.7              /* pixels: minimum pose error of an outlier, images of 28,000 pixels */
+#define TIMES_USUAL 4.0      /* minimum ratio of the pose error to the median over cameras */
+#define BETTER 2.0           /* minimum ratio of inliers under the fitted pose to those under the given pose */
 #define DEGREES (180 / 3.14159265358979323846)
 
-/** What is known of a camera. */
+/** State of a camera. */
 typedef struct standing {
-    uint32_t view;          /* the first of its views for training */
-    adcgs_stereo_view fit;  /* where its sights have it */
-    int given, fitted;      /* sights that fit to its pose as it is given, and to this one */
-    double off;             /* pixels from where one pose has these to where the other has, the median; NaN: nobody knows */
-    double distance;        /* of these points, in the median */
-    int trusted;            /* others are judged by it */
+    uint32_t view;          /* index of its first training view */
+    adcgs_stereo_view fit;  /* the fitted pose */
+    int given, fitted;      /* inliers of the given pose and of the fitted pose */
+    double off;             /* pixels: median distance between the inliers' positions under the two poses; NaN: unknown */
+    double distance;        /* median distance of these points */
+    int trusted;            /* 1: serves as a source for others */
     int named;
 } standing;
 
 typedef struct panel {
-    int n, anywhere;        /* cameras; whether points are looked for in the whole picture */
+    int n, anywhere;        /* number of cameras; 1: points are searched in the whole image */
     adcgs_stereo_view given[ADCGS_STEREO_CAMERAS];
     adcgs_outlook look[ADCGS_STEREO_CAMERAS];
     standing camera[ADCGS_STEREO_CAMERAS];
-    int asked[ADCGS_STEREO_CAMERAS], n_asked; /* those that are judged */
+    int asked[ADCGS_STEREO_CAMERAS], n_asked; /* the cameras to check */
     adcgs_error error[ADCGS_STEREO_CAMERAS];
 } panel;
 
 /* ---- One camera ---- */
 
-/** The nearest to a pose, which is camera c's, that are trusted and look the same way. */
+/** Chooses the nearest trusted sources with a similar viewing direction to `pose`, a pose of camera c. */
 static int choose_sources(const panel *r, int c, const adcgs_stereo_view *pose, int sources[SOURCES])
 {
     double far[SOURCES];
@@ -92,7 +92,7 @@ static double middle(double *values, int n)
     return n ? values[n / 2] : (double)NAN;
 }
 
-/** Pixels from where one view has a point to where another has it, which shows it. */
+/** Distance in pixels between the positions of a point in two views. View b shows the point. */
 static double between(const adcgs_stereo_view *a, const adcgs_stereo_view *b, const double x[3])
 {
     double depth, at[2];
@@ -103,7 +103,7 @@ static double between(const adcgs_stereo_view *a, const adcgs_stereo_view *b, co
     return adcgs_sight_off(a, &there);
 }
 
-/** How sights lie beside the given pose, as they fit to another one. */
+/** Compares the given pose with the fitted pose on the correspondences. */
 static void judge(standing *c, const adcgs_stereo_view *given, const adcgs_sights *s)
 {
     double offs[ADCGS_SIGHTS], far[ADCGS_SIGHTS];
@@ -147,9 +147,9 @@ static void judge_one(void *arg, int index, int thread)
     adcgs_free(NULL, alike);
 }
 
-/* ---- All ---- */
+/* ---- All cameras ---- */
 
-/** Where cameras that agree have what they show, in pixels; NaN: too few agree. */
+/** Median pose error over cameras, in pixels; NaN if none is known. */
 static double usual_off(const panel *r)
 {
     double offs[ADCGS_STEREO_CAMERAS];
@@ -165,7 +165,10 @@ static int agrees(const standing *c, double usual)
     return c->off < fmax(OFF, TIMES_USUAL * usual);
 }
 
-/** Judge those that do not agree once more, by those that do alone; 0: these are too few, or all agree. */
+/**
+ * Selects the cameras that disagree for another check against the trusted cameras only. Returns 0 if all agree or too few are
+ * trusted.
+ */
 static int ask_again(panel *r, double usual)
 {
     int well = 0;

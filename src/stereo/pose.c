@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Poses of bodies. */
+/** \file Poses of rigid bodies. */
 #include "stereo/pose.h"
 
 #include "camera/rotation.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How far poses are off, by pictures alone. */
+/** \file Pose errors measured from images alone. */
 #include "stereo/poses.h"
 
 #include "data/sort.h"
@@ -8,23 +8,23 @@
 #include <math.h>
 
 enum { SIDE = ADCGS_WINDOW_SIDE, WINDOW = ADCGS_WINDOW };
-enum { CELL = 7 };                            /* pixels from one place that is looked for to the next */
-enum { REACH = 4 };                           /* pixels beside a line */
-enum { STEPS_MOST = 200 };                    /* along it */
-enum { MATCHES_LEAST = 12, MATCHES_MOST = 1024 }; /* of a pair, that say something */
-enum { NEIGHBOURS = 2 };                      /* of a camera */
-#define AXES_ALIKE 0.85 /* cosine between axes of cameras that are compared */
-#define APART 0.02      /* scene units between them */
-#define ALIKE 0.9       /* correlation of a match */
-#define SHARP 0.05      /* that it falls by, a pixel beside it: an edge along the line would match anywhere */
+enum { CELL = 7 };                            /* pixels between sampled windows */
+enum { REACH = 4 };                           /* pixels: search range to each side of an epipolar line */
+enum { STEPS_MOST = 200 };                    /* maximum number of steps along a line */
+enum { MATCHES_LEAST = 12, MATCHES_MOST = 1024 }; /* per pair of cameras: minimum for a result, and maximum */
+enum { NEIGHBOURS = 2 };                      /* per camera */
+#define AXES_ALIKE 0.85 /* cosine: minimum alignment of the axes of compared cameras */
+#define APART 0.02      /* scene units: minimum distance between them */
+#define ALIKE 0.9       /* minimum correlation of a match */
+#define SHARP 0.05      /* minimum decrease of the correlation one pixel aside; an edge along the line would match anywhere */
 
 typedef struct pair {
     const adcgs_stereo_view *from, *to;
     double nearest, farthest;
-    double off; /* NaN: not known */
+    double off; /* pixels, signed; NaN: unknown */
 } pair;
 
-/** Correlations at a place of the line, and to its sides. */
+/** Correlations at a position on the line and at offsets perpendicular to it. */
 static void compare_across(const pair *p, const float own[WINDOW], const double at[2], const double side[2],
                            const double right[2], const double down[2], double alike[2 * REACH + 1])
 {
@@ -36,7 +36,7 @@ static void compare_across(const pair *p, const float own[WINDOW], const double 
     }
 }
 
-/** How far the best match of a pixel is beside its line, between pixels; NaN where none is good. */
+/** Sub-pixel offset of a pixel's best match from its epipolar line; NaN if there is no good match. */
 static double off_line(const pair *p, const float own[WINDOW], int px, int py)
 {
     double ends[2][2], right[2], down[2], at[2], alike[2 * REACH + 1], off = (double)NAN, best = ALIKE;
@@ -88,7 +88,7 @@ static void look_at_pair(void *arg, int i, int thread)
     p->off = offs[n / 2];
 }
 
-/** The nearest that look the same way and are not yet taken; -1: none. */
+/** The nearest camera with a similar viewing direction, except `taken`; -1: none. */
 static int next_neighbour(const adcgs_stereo_rig *rig, int own, int taken)
 {
     const adcgs_stereo_view *const a = &rig->camera[own].view;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How far poses are off, by pictures alone, before anything is learnt from them. */
+/** \file Pose errors measured from images alone, before training. */
 #ifndef ADCGS_STEREO_POSES_H
 #define ADCGS_STEREO_POSES_H
 
 #include "stereo/rig.h"
 
-/** Each camera is compared with the two nearest that look its way. out->pixels is left as it is. */
+/** Compares each camera with the two nearest cameras of similar viewing direction. Leaves out->pixels unchanged. */
 adcgs_status adcgs_stereo_poses_off(const adcgs_stereo_rig *rig, adcgs_stereo_off *out, adcgs_pool *pool, adcgs_error *error);
 
 #endif

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A body's points, and where they are found. */
+/** \file Points of a body, and their matches in a frame. */
 #include "stereo/register.h"
 
 #include "camera/vector.h"
 
 #include <math.h>
 
-#define TINT 14.0          /* pixels that a unit of colour is worth: 0.07 for one pixel */
-#define MATCH_REACH 2.0    /* pixels between what is the same */
-#define MATCH_OFF 3.0      /* with colours */
-#define FACING 0.15        /* cosine beyond which a surface is seen too much from the side */
-#define GAIN_LEAST 0.4     /* light changes by no more */
+#define TINT 14.0          /* pixels per unit of colour difference: 0.07 corresponds to one pixel */
+#define MATCH_REACH 2.0    /* pixels: maximum distance of a match in space */
+#define MATCH_OFF 3.0      /* pixels: the same including the colour term */
+#define FACING 0.15        /* cosine: minimum between normal and viewing ray; below it, a surface is seen at a grazing angle */
+#define GAIN_LEAST 0.4     /* bounds of lighting gains */
 #define GAIN_MOST 2.5
-#define GAIN_KNOWN 0.2     /* sum of squares of a channel that tells as much as all others do */
+#define GAIN_KNOWN 0.2     /* prior of the gains: sum of squares of a channel at which a side's own data has half the weight */
 
 int adcgs_body_side(const float normal[3])
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The pose of a camera from points that it shows. */
+/** \file Camera pose from correspondences. */
 #include "stereo/resect.h"
 
 #include "grad/random.h"
@@ -8,11 +8,11 @@
 #include <math.h>
 
 enum { ROUNDS = 30 };      /* of least squares */
-enum { TRIES = 400 };      /* of poses from two points */
+enum { TRIES = 400 };      /* poses from two correspondences */
 enum { SIGHTS_LEAST = 6 };
-#define SHARP 0.7          /* pixels that halve a sight's weight in the end */
-#define NARROWER 0.8       /* from one round to the next */
-#define ROUGHLY 0.06       /* of the picture's width: what a pose from two points has to be good for, parallax aside */
+#define SHARP 0.7          /* pixels: final error at which the fit is one half */
+#define NARROWER 0.8       /* factor of that error from one round to the next */
+#define ROUGHLY 0.06       /* share of the image width: tolerance of a pose from two correspondences, which ignores parallax */
 #define DAMPING 1e-6
 
 static void to_camera(const adcgs_stereo_view *v, const double x[3], double p[3])
@@ -22,7 +22,7 @@ static void to_camera(const adcgs_stereo_view *v, const double x[3], double p[3]
                v->rotation[3 * a + 2] * (x[2] - v->centre[2]);
 }
 
-/** Between where a view has the point and where it shows it. 0: it is behind. */
+/** Reprojection error of a correspondence. Returns 0 if the point is behind the camera. */
 static int difference(const adcgs_stereo_view *v, const adcgs_sight *s, double p[3], double off[2])
 {
     to_camera(v, s->x, p);
@@ -49,7 +49,7 @@ int adcgs_sights_near(const adcgs_stereo_view *view, const adcgs_sights *s, doub
 
 /* ---- Least squares ---- */
 
-/** Turn the camera by a small turn about itself, in its own axes, and shift what it sees. */
+/** Rotates the camera about its centre by a small rotation in its own axes, and shifts the scene. */
 static void move(adcgs_stereo_view *v, const double turn[3], const double shift[3])
 {
     adcgs_rigid own, step;
@@ -63,7 +63,7 @@ static void move(adcgs_stereo_view *v, const double turn[3], const double shift[
         v->centre[a] = -(own.r[a] * own.t[0] + own.r[3 + a] * own.t[1] + own.r[6 + a] * own.t[2]);
 }
 
-/** What a pixel coordinate does when the camera turns and what it sees shifts. q: this coordinate of p; axis: which it is. */
+/** Derivatives of a pixel coordinate by camera rotation and scene shift. axis: 0 or 1, the coordinate. */
 static void slope_of(const double p[3], int axis, double focal, double row[6])
 {
     double by_place[3] = { 0, 0, -focal * p[axis] / (p[2] * p[2]) };
@@ -74,7 +74,7 @@ static void slope_of(const double p[3], int axis, double focal, double row[6])
     memcpy(row + 3, by_place, sizeof by_place);
 }
 
-/** One step; 0 if there is none. sharp: pixels that halve a weight. */
+/** One step; 0 if the system is singular. sharp: error in pixels at which the fit is one half. */
 static int step(adcgs_stereo_view *v, const adcgs_sights *s, double sharp)
 {
     double a[36] = { 0 }, b[6] = { 0 }, p[3], off[2], row[6];
@@ -108,9 +108,9 @@ void adcgs_resect(adcgs_stereo_view *view, const adcgs_sights *sights, double of
         sharp = fmax(sharp * NARROWER, SHARP);
 }
 
-/* ---- From anywhere ---- */
+/* ---- Without an initial pose ---- */
 
-/** Turn a camera, which stays where it is, so that it shows two points where it does. */
+/** Rotates a camera about its centre so that two correspondences agree. */
 static void turn_to(adcgs_stereo_view *v, const adcgs_sight *two[2])
 {
     adcgs_rigid_sums sums = { .weight = 0 };
@@ -127,7 +127,7 @@ static void turn_to(adcgs_stereo_view *v, const adcgs_sight *two[2])
             own[a] /= sqrt(length);
         }
         adcgs_rigid_add(&sums, world, own, 1);
-        for (int a = 0; a < 3; a++) { /* and the other way, so that nothing is left to a shift */
+        for (int a = 0; a < 3; a++) { /* with the opposite vector, so that the fit contains no translation */
             world[a] = -world[a];
             own[a] = -own[a];
         }

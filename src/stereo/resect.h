@@ -1,26 +1,25 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Where a camera must be for points to lie where it shows them, though some are taken for others: the least squares of
- * distances in the picture, with weights that forget what does not fit, from poses that two points give (Fischler and Bolles
- * 1981, Random sample consensus, CACM 24).
+ * Camera pose from 3D-2D correspondences with outliers: least squares of the reprojection errors with robust weights, started
+ * from poses that two correspondences give (Fischler and Bolles 1981, Random sample consensus, CACM 24).
  */
 #ifndef ADCGS_STEREO_RESECT_H
 #define ADCGS_STEREO_RESECT_H
 
 #include "stereo/sight.h"
 
-/** Pixels that a point lies from where the camera shows it; infinite behind it. */
+/** Reprojection error in pixels; infinite if the point is behind the camera. */
 double adcgs_sight_off(const adcgs_stereo_view *view, const adcgs_sight *sight);
 
-/** Sights that are off by less than so many pixels. */
+/** Number of correspondences with an error of less than `off` pixels. */
 int adcgs_sights_near(const adcgs_stereo_view *view, const adcgs_sights *sights, double off);
 
-/** Move a view, whose picture is not looked at, to where its sights have it; as many pixels as they may be off at first. */
+/** Moves a view to the pose of least squares; its image is not used. off: expected initial error in pixels. */
 void adcgs_resect(adcgs_stereo_view *view, const adcgs_sights *sights, double off);
 
 /**
- * The same from anywhere. views: the other cameras, by their numbers in the sights: the view may be where they are, or where it
- * is said to be. What is drawn at random is so by `seed`.
+ * The same without an initial pose. views: the other cameras, indexed by the correspondences' `from`. The camera may be at its
+ * given position or at the position of another camera. Random choices are seeded with `seed`.
  */
 void adcgs_resect_anywhere(adcgs_stereo_view *view, const adcgs_sights *sights, const adcgs_stereo_view *views, uint64_t seed);
 

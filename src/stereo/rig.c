@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Cameras, moments, small pictures, and what they show most of the time; of a film, its pictures. */
+/** \file Cameras, frames, reduced images and backgrounds; for a single moving camera, its images. */
 #include "stereo/rig.h"
 
 #include "data/by_camera.h"
@@ -8,19 +8,19 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { PIXELS_LEAST = 4096, PIXELS_MOST = 28000 }; /* of a picture; of a small one */
-#define USUAL 18              /* levels of 255 that a pixel may be off what it usually shows */
-#define USUAL_SHARE 0.55      /* of the moments that a pixel has to show it */
-#define NEAREST 0.2           /* depths, scene units: where things have been seen to be in such units */
+enum { PIXELS_LEAST = 4096, PIXELS_MOST = 28000 }; /* minimum size of an image; maximum size of a reduced image */
+#define USUAL 18              /* levels of 255: maximum difference of a pixel from its background */
+#define USUAL_SHARE 0.55      /* minimum share of the frames in which a pixel must show its background */
+#define NEAREST 0.2           /* scene units: default depth range, from depths observed in such units */
 #define FARTHEST 8.0
 
-/** Which of the scene's views is whose, at what time. */
+/** Camera and time of the scene's views. */
 typedef struct index {
     const adcgs_scene_view *views;
     uint32_t n, n_cameras, n_times;
     uint32_t *of, *order;
     double *times; /* [n_times] ascending */
-    uint32_t *film; /* [n] the views in the order of time, if they are of one camera that goes; NULL: they are not */
+    uint32_t *film; /* [n] the views in order of time, if one moving camera took them; otherwise NULL */
 } index;
 
 static void index_clear(index *x)
@@ -31,10 +31,10 @@ static void index_clear(index *x)
     adcgs_free(NULL, x->film);
 }
 
-/* ---- A film: one camera, that goes ---- */
+/* ---- Single moving camera ---- */
 
-enum { FILM_LEAST = 8, ALIKE_OF_4 = 3 }; /* pictures; of four, those that look the way that the one before does */
-#define ALIKE 0.966 /* cosine between their axes */
+enum { FILM_LEAST = 8, ALIKE_OF_4 = 3 }; /* minimum number of images; images of four with the direction of the previous one */
+#define ALIKE 0.966 /* cosine between these directions */
 
 typedef struct timed {
     double time;
@@ -47,7 +47,7 @@ static int earlier(const void *a, const void *b)
     return x->time != y->time ? (x->time > y->time) - (x->time < y->time) : (x->view > y->view) - (x->view < y->view);
 }
 
-/** Whether most views look the way that the one before does. */
+/** True if most views look in the direction of the previous view. */
 static int goes_on(const index *x, const timed *all)
 {
     uint32_t alike = 0;
@@ -101,7 +101,7 @@ adcgs_status adcgs_stereo_applies(const adcgs_scene *scene, int *applies, adcgs_
 {
     index x;
     const adcgs_status status = index_init(&x, scene, error);
-    const int stay = x.n_times < 2 || x.n_cameras <= x.n / 2; /* those of a still scene have a picture each */
+    const int stay = x.n_times < 2 || x.n_cameras <= x.n / 2; /* or a static scene, whose cameras have one image each */
     const int large = x.n && (double)x.views[0].camera.width * x.views[0].camera.height >= PIXELS_LEAST;
     *applies = status == ADCGS_OK && large && (x.film || (x.n_cameras >= 3 && stay && x.n >= 2 * x.n_times));
     index_clear(&x);
@@ -158,7 +158,7 @@ void adcgs_stereo_rig_take(const adcgs_stereo_camera *camera, int moment, float 
         pixels[i] = camera->shown[moment][i] * (1.0f / 255);
 }
 
-/** Binomial weights of 5 pixels along a line of n that are step apart; what is not known does not count. */
+/** Binomial filter over 5 pixels of a line of n pixels, `step` apart. Unknown pixels have no weight. */
 static void soften_line(uint8_t *line, int n, size_t step, uint8_t *copy)
 {
     static const int weight[5] = { 1, 4, 6, 4, 1 };
@@ -196,7 +196,7 @@ adcgs_status adcgs_stereo_rig_soften(adcgs_stereo_rig *rig, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/* ---- What a camera shows most of the time ---- */
+/* ---- Background ---- */
 
 static uint8_t middle_of(uint8_t *values, int n)
 {
@@ -209,7 +209,7 @@ static uint8_t middle_of(uint8_t *values, int n)
     return values[n / 2];
 }
 
-/** The median of a pixel over the moments, and how many of these are near it. */
+/** Sets the background to the median of the pixel over the frames, and marks the pixel if too few frames are close to it. */
 static void set_usual(adcgs_stereo_camera *c, size_t pixel)
 {
     uint8_t values[ADCGS_STEREO_MOMENTS], usual[4];
@@ -246,7 +246,7 @@ static adcgs_status find_usual(adcgs_stereo_camera *c, adcgs_error *error)
 
 /* ---- Depths ---- */
 
-/** From what the data set says to where scene units end. */
+/** Sets the depth range from the data set's near bound, or to the range of scene units. */
 static void set_depths(adcgs_stereo_rig *rig, const adcgs_scene *scene, const adcgs_stereo_options *o)
 {
     rig->nearest = scene->near_bound > 0 ? fmax(0.9 * scene->near_bound / o->scale, 0.05) : NEAREST;
@@ -258,7 +258,7 @@ static float moment_of(const adcgs_scene *scene, double time)
     return scene->duration > 0 ? (float)fmin(fmax(time / scene->duration, 0), 1) : 0;
 }
 
-/** The pictures of one camera at the rig's moments; views: of that camera, ascending in time. */
+/** Loads the images of one camera at the rig's frames. views: of that camera, ascending in time. */
 static adcgs_status load_camera(const adcgs_stereo_rig *rig, adcgs_stereo_camera *camera, const adcgs_scene *scene,
                                 const index *x, const uint32_t *views, uint32_t n, const adcgs_stereo_options *o,
                                 adcgs_error *error)
@@ -298,7 +298,7 @@ static uint32_t moments_of(const adcgs_stereo_options *o)
     return o->moments ? o->moments : ADCGS_STEREO_MOMENTS;
 }
 
-/** Pictures of a film, evenly spread, as if all were taken at once by cameras that stay. */
+/** Loads evenly spaced images of a moving camera as one image each of static cameras. */
 static adcgs_status load_film(adcgs_stereo_rig *rig, const adcgs_scene *scene, const index *x, const adcgs_stereo_options *o,
                               adcgs_error *error)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The cameras of a scene that stay where they are, or those of a film's pictures, and what they show at a few moments, small, in
- * scene units: what is matched.
+ * The input of matching: static cameras, or the images of a single moving camera, with reduced images at a few frames, in scene
+ * units.
  */
 #ifndef ADCGS_STEREO_RIG_H
 #define ADCGS_STEREO_RIG_H
@@ -15,40 +15,40 @@
 
 enum { ADCGS_STEREO_CAMERAS = 24 };
 
-/** A camera and what it shows. */
+/** A camera and its image. */
 typedef struct adcgs_stereo_view {
     double rotation[9], centre[3]; /**< rows: the camera's axes; scene units */
     double fx, fy, cx, cy;
     int w, h;
-    const float *pixels; /**< [h][w][4] red, green, blue, and 1 where it is known */
-    const uint8_t *moves; /**< [h][w] 1: it shows what moves; NULL: nothing is known of that */
-    const uint8_t *still; /**< [h][w] 1: it shows what it usually does, and so do those about it; known where moves is */
+    const float *pixels; /**< [h][w][4] red, green, blue, and 1 where the pixel is known */
+    const uint8_t *moves; /**< [h][w] 1: moving content; NULL: unknown */
+    const uint8_t *still; /**< [h][w] 1: the 3x3 window shows only background; known if `moves` is */
 } adcgs_stereo_view;
 
 typedef struct adcgs_stereo_camera {
-    adcgs_stereo_view view;                /**< pixels: what it shows most of the time */
-    uint32_t first;                     /**< of its views for training */
-    float *usual;                       /**< [h][w][4] the same, its own */
-    uint8_t *changes;                   /**< [h][w] 1: there is nothing that it shows most of the time */
-    uint8_t *shown[ADCGS_STEREO_MOMENTS];  /**< [h][w][4] what it shows at a moment; NULL: no picture */
+    adcgs_stereo_view view;                /**< pixels: the background */
+    uint32_t first;                     /**< index of its first training view */
+    float *usual;                       /**< [h][w][4] background, the median over frames; owned */
+    uint8_t *changes;                   /**< [h][w] 1: no stable background */
+    uint8_t *shown[ADCGS_STEREO_MOMENTS];  /**< [h][w][4] image of each frame; NULL: none */
 } adcgs_stereo_camera;
 
 /** Zero-initialise before use. */
 typedef struct adcgs_stereo_rig {
     int n_cameras, n_moments;
-    int film; /**< one camera that goes: camera m shows moment m alone */
+    int film; /**< 1: a single moving camera; camera m has an image of frame m only */
     adcgs_stereo_camera camera[ADCGS_STEREO_CAMERAS];
-    float moment[ADCGS_STEREO_MOMENTS]; /**< t, ascending */
-    double nearest, farthest;        /**< depths that are looked at, scene units */
+    float moment[ADCGS_STEREO_MOMENTS]; /**< t of each frame, ascending */
+    double nearest, farthest;        /**< range of depths to search, scene units */
 } adcgs_stereo_rig;
 
 adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *scene, const adcgs_stereo_options *options,
                                    adcgs_error *error);
 void adcgs_stereo_rig_clear(adcgs_stereo_rig *rig);
 
-enum { ADCGS_STEREO_MOVED = 18 }; /**< levels of 255 that a pixel is off what it usually shows, at most, if nothing moves */
+enum { ADCGS_STEREO_MOVED = 18 }; /**< levels of 255: maximum difference from the background without motion */
 
-/** Whether a pixel shows something else at a moment, of which there is a picture, than most of the time. */
+/** True if a pixel differs from the background in a frame. The frame must have an image. */
 static inline int adcgs_stereo_rig_differs(const adcgs_stereo_camera *c, int moment, int pixel)
 {
     int most = 0;
@@ -57,13 +57,13 @@ static inline int adcgs_stereo_rig_differs(const adcgs_stereo_camera *c, int mom
     return most > ADCGS_STEREO_MOVED || c->changes[pixel];
 }
 
-/** Picture of a moment as numbers, [h][w][4]. */
+/** Converts the image of a frame to floats, [h][w][4]. */
 void adcgs_stereo_rig_take(const adcgs_stereo_camera *camera, int moment, float *pixels);
 
-/** Smooth the pictures of all moments, so that what is finer than a pixel or two does not disturb what is laid on them. */
+/** Smooths all images, so that details of one or two pixels do not disturb the registration of bodies. */
 adcgs_status adcgs_stereo_rig_soften(adcgs_stereo_rig *rig, adcgs_error *error);
 
-/** The first failure of n jobs that ran side by side, each with an error of its own that began as zeros. */
+/** Returns the first failure of n parallel jobs. Each job has its own error, initialised to zeros. */
 static inline adcgs_status adcgs_stereo_first_failure(const adcgs_error *errors, int n, adcgs_error *error)
 {
     int i = 0;
@@ -72,7 +72,7 @@ static inline adcgs_status adcgs_stereo_first_failure(const adcgs_error *errors,
     return i < n ? adcgs_fail(error, errors[i].status, "%s", errors[i].text) : ADCGS_OK;
 }
 
-/** How far apart views were taken, in scene units. */
+/** Distance between two camera centres, in scene units. */
 static inline double adcgs_stereo_apart(const adcgs_stereo_view *a, const adcgs_stereo_view *b)
 {
     double square = 0;
@@ -81,13 +81,16 @@ static inline double adcgs_stereo_apart(const adcgs_stereo_view *a, const adcgs_
     return sqrt(square);
 }
 
-/** The cosine between the ways that they look. */
+/** Cosine between two viewing directions. */
 static inline double adcgs_stereo_axes_dot(const adcgs_stereo_view *a, const adcgs_stereo_view *b)
 {
     return a->rotation[6] * b->rotation[6] + a->rotation[7] * b->rotation[7] + a->rotation[8] * b->rotation[8];
 }
 
-/** Where a point lies in a view: pixel coordinates, centres at + 0.5, and depth. 0 if it is behind the camera. */
+/**
+ * Projects a point into a view: pixel coordinates with centres at + 0.5, and depth. Returns 0 if the point is behind the camera
+ * (at[] is not set) or outside the image (at[] is set).
+ */
 static inline int adcgs_stereo_rig_project(const adcgs_stereo_view *v, const double x[3], double at[2], double *depth)
 {
     double p[3];
@@ -102,7 +105,7 @@ static inline int adcgs_stereo_rig_project(const adcgs_stereo_view *v, const dou
     return at[0] >= 0 && at[1] >= 0 && at[0] < v->w && at[1] < v->h;
 }
 
-/** The point at a depth behind the centre of a pixel. */
+/** The point at a given depth on the ray through the centre of a pixel. */
 static inline void adcgs_stereo_rig_lift(const adcgs_stereo_view *v, int px, int py, double depth, double x[3])
 {
     const double p[3] = { (px + 0.5 - v->cx) / v->fx * depth, (py + 0.5 - v->cy) / v->fy * depth, depth };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Motions and their numbers. */
+/** \file Rigid motions and their algebra. */
 #include "stereo/rigid.h"
 
 #include "camera/rotation.h"
@@ -33,7 +33,7 @@ void adcgs_rigid_inverse(const adcgs_rigid *m, adcgs_rigid *out)
     *out = i;
 }
 
-/** The rotation of a quaternion. */
+/** Sets the rotation from a quaternion. */
 static void set_rotation(adcgs_rigid *m, const double q[4])
 {
     double pose[12] = { 0 };
@@ -42,7 +42,7 @@ static void set_rotation(adcgs_rigid *m, const double q[4])
         memcpy(m->r + 3 * a, pose + 4 * a, 3 * sizeof *pose);
 }
 
-/** The shift that takes one place to another, after the rotation. */
+/** Sets the translation such that `from` maps to `to` after the rotation. */
 static void set_shift(adcgs_rigid *m, const double from[3], const double to[3])
 {
     double there[3];
@@ -54,7 +54,7 @@ static void set_shift(adcgs_rigid *m, const double from[3], const double to[3])
 void adcgs_rigid_about(const double turn[3], const double centre[3], const double shift[3], adcgs_rigid *out)
 {
     double q[4];
-    adcgs_rotation_exp(turn, 0.5, q); /* takes half the angle */
+    adcgs_rotation_exp(turn, 0.5, q); /* the function takes half the angle */
     set_rotation(out, q);
     set_shift(out, centre, (const double[]){ centre[0] + shift[0], centre[1] + shift[1], centre[2] + shift[2] });
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Rigid motions, and the one that lays pairs of points on each other best (Horn 1987, Closed-form solution of absolute
- * orientation using unit quaternions, JOSA A 4).
+ * Rigid motions, and the least-squares motion between pairs of points (Horn 1987, Closed-form solution of absolute orientation
+ * using unit quaternions, JOSA A 4).
  */
 #ifndef ADCGS_STEREO_RIGID_H
 #define ADCGS_STEREO_RIGID_H
 
-/** x goes to r x + t; r: rows. */
+/** x maps to r x + t; r: rows. */
 typedef struct adcgs_rigid {
     double r[9], t[3];
 } adcgs_rigid;
@@ -28,23 +28,25 @@ static inline void adcgs_rigid_apply(const adcgs_rigid *m, const double x[3], do
         out[a] = m->r[3 * a] * x[0] + m->r[3 * a + 1] * x[1] + m->r[3 * a + 2] * x[2] + m->t[a];
 }
 
-extern const adcgs_rigid adcgs_rigid_none; /**< it leaves all where it is */
+extern const adcgs_rigid adcgs_rigid_none; /**< the identity */
 
-/** First one, then the other. out may be either. */
+/** Composition: first, then second. out may be either. */
 void adcgs_rigid_then(const adcgs_rigid *first, const adcgs_rigid *second, adcgs_rigid *out);
 void adcgs_rigid_inverse(const adcgs_rigid *m, adcgs_rigid *out);
 
-/** A turn, which is an axis times an angle, about a centre, and then a shift. */
+/** Rotation about a centre, given as axis times angle, followed by a translation. */
 void adcgs_rigid_about(const double turn[3], const double centre[3], const double shift[3], adcgs_rigid *out);
 
 void adcgs_rigid_add(adcgs_rigid_sums *sums, const double from[3], const double to[3], double weight);
-/** The motion of the least squares; none without any pair. */
+/** The least-squares motion; the identity without any pair. */
 void adcgs_rigid_fit(const adcgs_rigid_sums *sums, adcgs_rigid *out);
 
-/** Eigenvectors of a symmetric matrix of n <= 4 rows by Jacobi's rotations: columns of v; a becomes diagonal. */
+/** Eigenvectors of a symmetric matrix of n <= 4 rows by Jacobi rotations: columns of v; a becomes diagonal. */
 void adcgs_symmetric_eigen(double *a, double *v, int n);
 
-/** Solve a x = b of six unknowns, a positive definite, by Cholesky's factors. 0 if it is not. */
+/**
+ * Solves a x = b with six unknowns and positive definite a, by Cholesky factorisation. Returns 0 if a is not positive definite.
+ */
 int adcgs_solve_six(double a[36], double b[6]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Points of other cameras in a camera's picture. */
+/** \file Search for points of other cameras in a camera's image. */
 #include "stereo/sight.h"
 
 #include "stereo/window.h"
@@ -7,17 +7,17 @@
 #include <math.h>
 
 enum { SIDE = ADCGS_WINDOW_SIDE, RADIUS = SIDE / 2, WINDOW = ADCGS_WINDOW };
-enum { CELL = 3 };      /* pixels from one that may be a mark to the next */
-enum { BESIDE = 2 };    /* pixels from a match: beyond it another one would do as well */
-#define ALIKE 0.88f     /* correlation of a match */
-#define SHARP 0.04f     /* that it falls by, a pixel beside it */
-#define UNIQUE 0.06f    /* less alike is all else */
-#define SMALLEST 0.5    /* of a window in one picture to the same in another, and */
+enum { CELL = 3 };      /* pixels between candidate keypoints */
+enum { BESIDE = 2 };    /* pixels: radius around a match; a similar window outside it makes the match ambiguous */
+#define ALIKE 0.88f     /* minimum correlation of a match */
+#define SHARP 0.04f     /* minimum decrease of the correlation one pixel away */
+#define UNIQUE 0.06f    /* minimum lead over all windows outside the radius */
+#define SMALLEST 0.5    /* range of the scale between the windows in the two images */
 #define LARGEST 2.0
 
-/* ---- Pictures ---- */
+/* ---- Windows ---- */
 
-/** One over the length of the window about a pixel without its mean. */
+/** Inverse norm of the window around a pixel, after subtraction of its mean. */
 static float over_of(const float *grey, const uint8_t *known, int w, int x, int y)
 {
     float sum = 0, square = 0;
@@ -32,7 +32,7 @@ static float over_of(const float *grey, const uint8_t *known, int w, int x, int 
     return square > WINDOW * ADCGS_WINDOW_TEXTURE ? 1 / sqrtf(square) : 0;
 }
 
-/** Correlation of a window, of mean 0 and length 1, with those about n pixels of a row that follow one another. */
+/** Correlations of a window, of mean 0 and norm 1, with the windows around n consecutive pixels of a row. */
 static void compare_row(const adcgs_outlook *o, const float own[WINDOW], int x, int y, int n, float *alike)
 {
     const int w = o->view->w;
@@ -48,14 +48,14 @@ static void compare_row(const adcgs_outlook *o, const float own[WINDOW], int x, 
         alike[i] *= o->over[y * w + x + i];
 }
 
-/** Whether a correlation falls to all sides of a place. */
+/** True if the correlation decreases to all sides. */
 static int is_peak(const float *alike, int w)
 {
     const float least = alike[0] - SHARP;
     return alike[-1] < least && alike[1] < least && alike[-w] < least && alike[w] < least;
 }
 
-/** Is a pixel the one place in its surroundings that looks so? */
+/** True if a pixel is a keypoint: no adjacent window is similar. */
 static int is_mark(const adcgs_outlook *o, int x, int y)
 {
     float own[WINDOW], alike[9];
@@ -68,7 +68,7 @@ static int is_mark(const adcgs_outlook *o, int x, int y)
     return is_peak(alike + 4, 3);
 }
 
-/** So many of all that could be marks, evenly. */
+/** Chooses an even subset of the candidates, at most ADCGS_SIGHT_MARKS. */
 static void choose_marks(adcgs_outlook *o, const adcgs_depths *d)
 {
     const int w = o->view->w, h = o->view->h;
@@ -117,9 +117,9 @@ void adcgs_outlook_clear(adcgs_outlook *o)
     *o = (adcgs_outlook){ .n_marks = 0 };
 }
 
-/* ---- Looking ---- */
+/* ---- Search ---- */
 
-/** The rectangle that is looked at: from x0, y0 until before x1, y1. */
+/** The rectangle to search: from x0, y0 up to, but not including, x1, y1. */
 typedef struct field {
     int x0, y0, x1, y1;
 } field;
@@ -135,7 +135,7 @@ static field field_about(const adcgs_stereo_view *v, const double at[2], int rea
     return f;
 }
 
-/** The one pixel of the field whose window is like this one, and where between pixels that is; 0: there is none. */
+/** Finds the unique pixel of the field with a similar window, to a fraction of a pixel. Returns 0 if there is none. */
 static int look(const adcgs_outlook *in, const float own[WINDOW], const field *f, float *alike, double at[2])
 {
     const int w = f->x1 - f->x0, h = f->y1 - f->y0;
@@ -158,7 +158,7 @@ static int look(const adcgs_outlook *in, const float own[WINDOW], const field *f
     return 1;
 }
 
-/** From one step in the other picture to the right and below to one in this picture. 0 where it is much larger or smaller. */
+/** Inverts the derivatives of the mapping between the images. Returns 0 if the scale is out of range. */
 static int turn_round(double right[2], double down[2])
 {
     const double a = right[0], b = down[0], c = right[1], d = down[1], det = a * d - b * c;

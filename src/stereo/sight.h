@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Points whose places other cameras know, looked for in a camera's picture: about where its pose has them, or anywhere.
+ * Correspondences: points known from other cameras, searched in a camera's image around their expected positions or in the whole
+ * image.
  */
 #ifndef ADCGS_STEREO_SIGHT_H
 #define ADCGS_STEREO_SIGHT_H
@@ -9,22 +10,22 @@
 
 enum { ADCGS_SIGHT_MARKS = 224, ADCGS_SIGHTS = 1024 };
 
-/** A pixel whose depth is known, and whose surroundings are not like those of the pixels beside it. */
+/** A keypoint: a pixel with known depth and a window that differs from those of adjacent pixels. */
 typedef struct adcgs_mark {
     int px, py;
     double depth;
 } adcgs_mark;
 
-/** A picture made ready to be looked at. Zero-initialise before use. */
+/** An image prepared for the search. Zero-initialise before use. */
 typedef struct adcgs_outlook {
     const adcgs_stereo_view *view;
     float *grey; /**< [h][w] */
-    float *over; /**< [h][w] 1 over the length of the window about a pixel; 0: it tells nothing */
+    float *over; /**< [h][w] inverse norm of the window around a pixel; 0: no usable window */
     int n_marks;
     adcgs_mark mark[ADCGS_SIGHT_MARKS];
 } adcgs_outlook;
 
-/** Where a camera shows a point that another one, which is named by its number, knows. */
+/** A correspondence: a point known from camera `from`, and its position in the image. */
 typedef struct adcgs_sight {
     double x[3], at[2];
     int from;
@@ -35,15 +36,15 @@ typedef struct adcgs_sights {
     adcgs_sight sight[ADCGS_SIGHTS];
 } adcgs_sights;
 
-/** changes: [h][w] of the view, 1: its pixel is not looked at. depths: of the view. */
+/** changes: [h][w] of the view, 1 at pixels to ignore. depths: of the view. */
 adcgs_status adcgs_outlook_init(adcgs_outlook *outlook, const adcgs_stereo_view *view, const uint8_t *changes,
                                 const adcgs_depths *depths, adcgs_error *error);
 void adcgs_outlook_clear(adcgs_outlook *outlook);
 
 /**
- * Look for the marks of another camera, for one in `every` of them. pose: of `in`, where it may be; its pixels are not looked at.
- * They are looked for no farther than reach pixels from where this pose has them; a reach of 0: anywhere, as if that camera
- * looked the same way as the other one. alike: [h][w] for work.
+ * Searches for keypoints of another camera, one in `every` of them. pose: assumed pose of `in`; its pixels are not used. The
+ * search covers `reach` pixels around the position that this pose predicts. A reach of 0 searches the whole image, under the
+ * assumption that both cameras look in the same direction. alike: scratch, [h][w].
  */
 void adcgs_sights_add(adcgs_sights *sights, const adcgs_outlook *in, const adcgs_stereo_view *pose, const adcgs_outlook *other,
                       int from, int every, int reach, float *alike);

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Smoothing over eight paths, and the choice of planes. */
+/** \file Smoothing of costs along eight paths, and the choice of planes. */
 #include "stereo/smooth.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { STEP_PRICE = 6, JUMP_LEAST = 20, JUMP_MORE = 60, PATHS = 4 /* that come from one side */ };
-#define EDGE 20.0f       /* per unit of contrast: edges of pictures may be edges of things */
-#define ALIKE 0.45f      /* cost of a good match, of all */
-#define CLEAR 0.03f      /* by which the next best has to be worse */
+enum { STEP_PRICE = 6, JUMP_LEAST = 20, JUMP_MORE = 60, PATHS = 4 /* paths from one side */ };
+#define EDGE 20.0f       /* per unit of contrast: depth edges often coincide with image edges */
+#define ALIKE 0.45f      /* maximum cost of a strong match, relative to the full cost */
+#define CLEAR 0.03f      /* minimum lead of the best plane over the next best */
 
-/** Before and behind the planes of a path, so that no plane is a special case. */
+/** Padding before and after the planes of a path, so that no plane is a special case. */
 enum { BESIDE = 1, BEYOND = 16000 };
 
-/** Cost of a pixel's planes when it is reached from a neighbour: to[d]; from: those of the neighbour. The least of to. */
+/** Costs to[] of a pixel's planes when the path comes from a neighbour with costs from[]. Returns the minimum of to. */
 static int16_t reach(int16_t *restrict to, const int16_t *restrict from, const int16_t *restrict cost, int planes, int16_t least,
                      int16_t jump)
 {
@@ -35,7 +35,7 @@ typedef struct paths {
     const adcgs_sweep *s;
     const int16_t *cost;
     int16_t *sum;             /* [h][w][planes] */
-    int16_t *row[2][PATHS];   /* [w][planes + 2 BESIDE] of this row and the one before, from plane 0 on */
+    int16_t *row[2][PATHS];   /* [w][planes + 2 BESIDE] of this row and the previous row, from plane 0 on */
     int16_t *least[2][PATHS]; /* [w] */
 } paths;
 
@@ -47,7 +47,7 @@ static int16_t jump_between(const adcgs_sweep *s, int x, int y, int px, int py)
     return (int16_t)(JUMP_LEAST + JUMP_MORE / (1 + EDGE * contrast));
 }
 
-/** One pixel, from the side that sign says: from the pixel before, and three in the row before. */
+/** Updates one pixel in direction `sign`: from the previous pixel, and from three in the previous row. */
 static void walk(paths *p, int x, int y, int sign)
 {
     static const int step[PATHS][2] = { { 1, 0 }, { 1, 1 }, { 0, 1 }, { -1, 1 } };
@@ -110,7 +110,7 @@ static adcgs_status smooth(const adcgs_sweep *s, const int16_t *cost, int16_t *s
 
 /* ---- Decisions ---- */
 
-/** The lowest point of a parabola through three values at -1, 0, 1, of which the middle one is the least. */
+/** Minimum of the parabola through three values at -1, 0, 1, the middle one being the least. */
 static double lowest(double before, double here, double after)
 {
     const double bend = before - 2 * here + after;

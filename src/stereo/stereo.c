@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What is still, what moves, and where nothing is. */
+/** \file Static points, moving points, and free space. */
 #include "stereo/stereo.h"
 
 #include "stereo/bodies.h"
@@ -14,21 +14,21 @@
 
 #include <math.h>
 
-enum { REFERENCES = 4, MOVING_LEAST = 24, MARGIN = 4 }; /* views that are matched at a moment; pixels that move; about them */
-enum { MOST = 5, LINE = 3 }; /* of nine pixels */
-#define AXES_ALIKE 0.6  /* cosine between axes of views that are matched */
-#define APART 0.005     /* scene units between views that tell depths */
+enum { REFERENCES = 4, MOVING_LEAST = 24, MARGIN = 4 }; /* views matched per frame; least moving pixels; pixels around them */
+enum { MOST = 5, LINE = 3 }; /* of the nine pixels of a window */
+#define AXES_ALIKE 0.6  /* cosine: minimum alignment of the axes of matched views */
+#define APART 0.005     /* scene units: minimum distance between views, for depth */
 
 struct adcgs_stereo_maps {
     int n;
     adcgs_stereo_view view[ADCGS_STEREO_CAMERAS];
     adcgs_depths depths[ADCGS_STEREO_CAMERAS];
-    const uint8_t *changes[ADCGS_STEREO_CAMERAS]; /* [h][w] of the rig, while there is one */
+    const uint8_t *changes[ADCGS_STEREO_CAMERAS]; /* [h][w] of the rig, valid while the rig exists */
 };
 
 /* ---- Neighbours ---- */
 
-/** The nearest views that look the same way. */
+/** The nearest views with a similar viewing direction. */
 static void choose_sources(adcgs_sweep *s, const adcgs_stereo_view *views, int n, int own)
 {
     double best[ADCGS_SWEEP_SOURCES];
@@ -54,9 +54,9 @@ static void choose_sources(adcgs_sweep *s, const adcgs_stereo_view *views, int n
     }
 }
 
-/* ---- One set of views that were taken at once ---- */
+/* ---- Matching of simultaneous views ---- */
 
-/** Views, the parts of them that are matched, and what is found. */
+/** Views, the parts to match, and the results. */
 typedef struct match {
     int n;
     adcgs_stereo_view *views;
@@ -85,7 +85,7 @@ static adcgs_status match_all(match *m, adcgs_pool *pool, adcgs_error *error)
     return adcgs_stereo_first_failure(m->error, m->n, error);
 }
 
-/* ---- What is still ---- */
+/* ---- Static points ---- */
 
 static adcgs_status find_still(adcgs_stereo *out, adcgs_stereo_list *list, const adcgs_stereo_rig *rig, adcgs_pool *pool,
                                adcgs_error *error)
@@ -121,9 +121,12 @@ static adcgs_status find_still(adcgs_stereo *out, adcgs_stereo_list *list, const
     return status;
 }
 
-/* ---- What moves ---- */
+/* ---- Moving points ---- */
 
-/** Where a picture is off what is usual, and so is most of what is about, or a line through it; and where nothing about is. */
+/**
+ * Marks moving pixels: most of the window, or a line through a differing pixel, differs from the background. Also marks pixels
+ * whose window shows only background.
+ */
 static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t *moves, uint8_t *still, int part[4])
 {
     const int w = c->view.w, h = c->view.h;
@@ -153,7 +156,7 @@ static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t
     memcpy(part, (const int[]){ left, top, n < MOVING_LEAST ? 0 : right - left + 1, bottom - top + 1 }, 4 * sizeof *part);
 }
 
-/** All that one moment takes. */
+/** Working memory of one frame. */
 typedef struct moment {
     adcgs_stereo_view view[ADCGS_STEREO_CAMERAS];
     int part[ADCGS_STEREO_CAMERAS][4];
@@ -182,7 +185,7 @@ static adcgs_status take_moment(moment *o, const adcgs_stereo_rig *rig, int m, a
         o->view[i].still = o->moves[i] + plane;
         mark(camera, m, o->moves[i] + 2 * plane, o->moves[i], o->moves[i] + plane, o->part[i]);
     }
-    for (int i = 0; i < o->n; i++) /* not every view of many is matched */
+    for (int i = 0; i < o->n; i++) /* matches at most REFERENCES of the views */
         if (o->n > REFERENCES && i * REFERENCES / o->n == (i + 1) * REFERENCES / o->n)
             o->part[i][2] = 0;
     return ADCGS_OK;
@@ -198,7 +201,7 @@ static void moment_free(moment *o)
     adcgs_free(NULL, o);
 }
 
-/** Whether two cameras have a surface there in what they usually show; and whether they show it most of the time. */
+/** Tests if two cameras have a background surface at a position, and if it is visible most of the time. */
 static adcgs_stereo_in_place in_place(const adcgs_stereo_maps *maps, const double x[3])
 {
     double there[3], at[2] = { 0, 0 }, depth;
@@ -214,7 +217,7 @@ static adcgs_stereo_in_place in_place(const adcgs_stereo_maps *maps, const doubl
     return still >= 2 ? ADCGS_PLACE_STILL : same >= 2 ? ADCGS_PLACE_COMMON : ADCGS_PLACE_OWN;
 }
 
-/** Whether no view has another near enough to be matched with. */
+/** True if no view has a source for matching. */
 static int all_stand_apart(const moment *o)
 {
     adcgs_sweep s = { .n_sources = 0 };
@@ -223,7 +226,7 @@ static int all_stand_apart(const moment *o)
     return !s.n_sources;
 }
 
-/** By matching; where cameras stand too far apart for it, by silhouettes. */
+/** Matches a frame. Cameras that are too far apart for matching use silhouettes. */
 static adcgs_status match_moment(adcgs_stereo_list *found, const adcgs_stereo_rig *rig, int m, adcgs_pool *pool,
                                  adcgs_error *error)
 {
@@ -260,7 +263,7 @@ static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig 
     return status;
 }
 
-/* ---- All ---- */
+/* ---- All points ---- */
 
 static adcgs_status find(adcgs_stereo *out, adcgs_stereo_rig *rig, const adcgs_stereo_options *options, adcgs_pool *pool,
                          adcgs_error *error)
@@ -309,7 +312,7 @@ adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, cons
         out->poses.pixels = (double)scene->views[ADCGS_SPLIT_TRAIN][0].camera.width / rig->camera[0].view.w;
         status = find(out, rig, options, pool, error);
     }
-    for (int i = 0; out->maps && i < out->maps->n; i++) { /* the pictures go */
+    for (int i = 0; out->maps && i < out->maps->n; i++) { /* the images are released with the rig */
         out->maps->view[i].pixels = NULL;
         out->maps->changes[i] = NULL;
     }

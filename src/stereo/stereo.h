@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Where things are, found by matching pictures before training: multi-view stereo. Cameras of one moment are matched over planes
- * of equal depth (Collins 1996, A space-sweep approach to true multi-image matching, CVPR), all neighbours at once, so that a
- * pattern that repeats finds the one depth at which all of them agree; what each camera finds is kept where others find the same.
+ * Multi-view stereo before training: 3D points from matched images. The cameras of one frame are matched over planes of equal
+ * depth (Collins 1996, A space-sweep approach to true multi-image matching, CVPR). All neighbours are compared at once, so that a
+ * repetitive pattern matches only at the depth on which they all agree. A depth is kept if other cameras confirm it.
  *
- * Cameras that stay where they are are matched once on what they show most of the time, which gives what is still, and moment by
- * moment where they show something else, which gives what moves, when, and how fast. The pictures of a film, of one camera that
- * goes, are matched as if all were taken at once, which gives what is still, and that tells where something else is shown. Only
- * views for training are looked at.
- * Deterministic for any number of threads.
+ * Static cameras are matched once on their background, which gives the static points. In each frame they are matched again where
+ * the image differs from the background, which gives moving points with time and velocity. The images of a single moving camera
+ * are matched as if all were taken at once. This gives the static points, and with them the pixels that show other content. Only
+ * training views are used.
+ * The result does not depend on the number of threads.
  */
 #ifndef ADCGS_STEREO_STEREO_H
 #define ADCGS_STEREO_STEREO_H
@@ -16,71 +16,71 @@
 #include "base/pool.h"
 #include "data/scene.h"
 
-enum { ADCGS_STEREO_MOMENTS = 48 /**< that are looked at, at most */ };
+enum { ADCGS_STEREO_MOMENTS = 48 /**< maximum number of matched frames */ };
 
-/** Whether something that moves lies where what is still lies anyhow. */
+/** Relation of a moving point to the static surfaces. */
 typedef enum adcgs_stereo_in_place {
-    ADCGS_PLACE_OWN,    /**< it does not */
-    ADCGS_PLACE_COMMON, /**< it does: a shadow, what is uncovered, or what turns on the spot */
-    ADCGS_PLACE_STILL   /**< and most of the time what is still is seen there, so that it does not turn there all the time */
+    ADCGS_PLACE_OWN,    /**< not on a static surface */
+    ADCGS_PLACE_COMMON, /**< on a surface: a shadow, uncovered background, or an object that rotates in place */
+    ADCGS_PLACE_STILL   /**< on a surface that is visible most of the time, so no object rotates there all the time */
 } adcgs_stereo_in_place;
 
 typedef struct adcgs_stereo_point {
     double x[3];       /**< scene units */
     float rgb[3];
-    float t;           /**< moment, 0..1; 0.5 for what is still */
-    float velocity[3]; /**< scene units per unit of t; 0 where it is not known */
+    float t;           /**< time, 0..1; 0.5 for static points */
+    float velocity[3]; /**< scene units per unit of t; 0 if unknown */
     float size;        /**< of a pixel at the point, scene units */
-    float end[2];      /**< how long before and behind t it stays as it goes, of all time; 0: nothing tells of an end */
-    float life, shift; /**< for who makes it an anchor: half of its life to begin with, and from t to the middle of that */
-    float detail;      /**< contrast of the picture about it, 0..1 */
+    float end[2];      /**< time from t to the end of the lifetime, before and after, 1: whole duration; 0: unknown */
+    float life, shift; /**< for the anchor: initial half lifetime, and offset of its middle from t */
+    float detail;      /**< contrast of the image around it, 0..1 */
     uint8_t moves;
     uint8_t in_place;  /**< adcgs_stereo_in_place */
-    uint8_t body;      /**< the body that it is part of, from 1; 0: none */
+    uint8_t body;      /**< index of its rigid body, from 1; 0: none */
 } adcgs_stereo_point;
 
-/** Where a rigid body is at a moment: x at rest is at R(q) (x - pivot) + pivot + way. q: w, x, y, z, of length 1. */
+/** Pose of a rigid body in a frame: a rest position x moves to R(q) (x - pivot) + pivot + way. q: w, x, y, z, of length 1. */
 typedef struct adcgs_stereo_pose {
     double q[4], way[3];
 } adcgs_stereo_pose;
 
-/** Parts of what moves that keep their form, followed over all moments. Signs of q are such that neighbours in time are near. */
+/** A rigid body, tracked over all frames. The signs of q are such that consecutive poses are close. */
 typedef struct adcgs_stereo_body {
     double pivot[3];         /**< scene units */
     adcgs_stereo_pose *pose; /**< [n_moments] */
-    uint32_t n;              /**< points that are part of it */
+    uint32_t n;              /**< number of its points */
 } adcgs_stereo_body;
 
 typedef struct adcgs_stereo_options {
     double origin[3], scale; /**< of scene units, see adcgs_scene_frame() */
-    uint32_t still;          /**< points that do not move, at most */
-    uint32_t moving;         /**< points of each moment that do, at most */
-    uint32_t moments;        /**< that are looked at, evenly spread, at most; 0: ADCGS_STEREO_MOMENTS */
-    uint32_t bodies;         /**< rigid bodies among these, at most ADCGS_BODIES_MAX; 0: none are looked for */
-    int judges;              /**< poses are judged */
+    uint32_t still;          /**< maximum number of static points */
+    uint32_t moving;         /**< maximum number of moving points per frame */
+    uint32_t moments;        /**< maximum number of matched frames, evenly spaced; 0: ADCGS_STEREO_MOMENTS */
+    uint32_t bodies;         /**< maximum number of rigid bodies, up to ADCGS_BODIES_MAX; 0: no search */
+    int judges;              /**< 1: measure pose errors and report outliers */
 } adcgs_stereo_options;
 
 /**
- * How far poses are off. What one camera shows lies on a line in another's picture, wherever it is in space; where matches lie
- * beside it, poses or lenses are wrong.
+ * Pose errors. A pixel of one camera lies on its epipolar line in another image, at any depth. If matches lie off these lines,
+ * the poses or the lens parameters are wrong.
  */
 typedef struct adcgs_stereo_off {
-    int pairs;     /**< of cameras that have enough in common; none: nothing is known */
-    double median; /**< over these, of the distance of most of a pair's matches to one side, in pixels of what is matched */
-    double pixels; /**< of the pictures as they are, to one of these */
+    int pairs;     /**< camera pairs with enough matches; 0: no result */
+    double median; /**< median over pairs of |median offset of a pair's matches from the line|, pixels of reduced images */
+    double pixels; /**< pixels of the original image per pixel of a reduced image */
 } adcgs_stereo_off;
 
 enum { ADCGS_STEREO_ODD = 4 };
 
-/** A camera that shows what others show where its pose has it not, and the pose that would do. */
+/** A camera whose image contradicts its pose, and the correction by the fitted pose. */
 typedef struct adcgs_stereo_odd {
-    uint32_t view; /**< the first of its views for training */
-    double off;    /**< how far beside, in the median, in pixels of what is matched */
-    double turned; /**< degrees from its pose to that one, and */
-    double moved;  /**< the way, over the distance of what it sees */
+    uint32_t view; /**< index of its first training view */
+    double off;    /**< median error, pixels of reduced images */
+    double turned; /**< degrees: rotation to the fitted pose */
+    double moved;  /**< translation to it, relative to the distance of the points */
 } adcgs_stereo_odd;
 
-/** Depths of what is still, which also say where nothing is. */
+/** Static depth maps, which also bound free space. */
 typedef struct adcgs_stereo_maps adcgs_stereo_maps;
 
 /** Zero-initialise before use. */
@@ -88,42 +88,42 @@ typedef struct adcgs_stereo {
     uint32_t n_still, n_moving;
     adcgs_stereo_point *still;
     adcgs_stereo_point *moving; /**< ascending in t */
-    int film;                   /**< one camera that goes: each moment is seen from one place */
+    int film;                   /**< 1: a single moving camera, so each frame has one view */
     uint32_t n_moments;
-    float *moment;              /**< [n_moments] those that were matched, ascending in t */
+    float *moment;              /**< [n_moments] t of the matched frames, ascending */
     uint32_t n_bodies;          /**< at most ADCGS_BODIES_MAX, the largest first */
     adcgs_stereo_body *body;
-    adcgs_stereo_off poses;     /**< these, and cameras that are odd, if that was asked for */
+    adcgs_stereo_off poses;     /**< pose errors and outliers, if options.judges */
     int n_odd;
     adcgs_stereo_odd odd[ADCGS_STEREO_ODD];
     adcgs_stereo_maps *maps;
 } adcgs_stereo;
 
 /**
- * Whether a scene allows it: at least three cameras that stay, in the mean two of them at a time, or a film, of one camera that
- * goes; pictures that are not tiny.
+ * Sets *applies if matching suits the scene. It needs images that are not tiny, and one of two: at least three static cameras,
+ * with two images per frame on average, or a single moving camera.
  */
 adcgs_status adcgs_stereo_applies(const adcgs_scene *scene, int *applies, adcgs_error *error);
 
-/** Both lists may be empty. */
+/** Matches the scene. Both lists may be empty. */
 adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, const adcgs_stereo_options *options,
                                adcgs_pool *pool, adcgs_error *error);
 void adcgs_stereo_clear(adcgs_stereo *stereo);
 
-/** Time between neighbouring moments, of all time. */
+/** Time between adjacent frames, 1: whole duration. */
 static inline float adcgs_stereo_spacing(const adcgs_stereo *stereo)
 {
     const uint32_t n = stereo->n_moments;
     return n > 1 ? (stereo->moment[n - 1] - stereo->moment[0]) / (float)(n - 1) : 1;
 }
 
-/** Whether most cameras that have a place, in scene units, in their pictures know a surface there, before it or behind it. */
+/** True if most cameras whose image contains the position, in scene units, have a depth there, in front of it or behind it. */
 int adcgs_stereo_is_known(const adcgs_stereo *stereo, const double x[3]);
 
 /**
- * Whether what is still can be at a place, in scene units, only because hardly any camera would tell: no more than a third of
- * them have it in their pictures, and those that know something there see through it, to something behind; one does, or none has
- * it in its picture. A camera between the others would see it float before it.
+ * True if static content at this position, in scene units, would be a floater. At most a third of the cameras have it in their
+ * image, and no depth confirms it. At least one of them sees through it to a surface behind, or no camera has it in its image. A
+ * camera between the others would see it float in front of the scene.
  */
 int adcgs_stereo_floats(const adcgs_stereo *stereo, const double x[3]);
 

@@ -6,20 +6,20 @@
 
 enum { RADIUS = 2, SIDE = 2 * RADIUS + 1, PLANES_LEAST = 24, PLANES_MOST = 112 };
 #define WINDOW (SIDE * SIDE)
-#define NOISE 1e-4f         /* variance that tells nothing */
-/* Cost of windows that are not alike, of colours that are not, and of a place that a neighbour does not see. */
+#define NOISE 1e-4f         /* variance of a window without texture */
+/* Maximum costs: of uncorrelated windows, of a colour difference, and of a position that a neighbour does not see. */
 enum { UNLIKE_MOST = 120, COLOUR_MOST = ADCGS_SWEEP_COST - UNLIKE_MOST, UNSEEN = 2 * ADCGS_SWEEP_COST };
-enum { STILL_THERE = 100 }; /* where the view shows what moves, a neighbour what it usually does */
-enum { THIN = 12 };         /* pixels of a window, at most, that move, if what moves is thin */
-#define COLOUR_OFF 0.15f    /* a difference that is as bad as any */
+enum { STILL_THERE = 100 }; /* cost where the view shows moving content and the neighbour shows background */
+enum { THIN = 12 };         /* maximum number of moving pixels in the window of a thin object */
+#define COLOUR_OFF 0.15f    /* colour difference of maximum cost */
 #define COLOUR_SCALE (COLOUR_MOST / (3 * WINDOW * COLOUR_OFF))
 
 /* ---- Planes ---- */
 
-/** From ray and inverse depth of one view to another's picture: (u, v, 1) ~ turn (ray, 1) + inverse * move. */
+/** Mapping from a ray and inverse depth of one view to another image: (u, v, 1) ~ turn (ray, 1) + inverse * move. */
 typedef struct passage {
     float turn[9], move[3];
-    float fx, fy, cx, cy; /* of pixels counted from the first one's centre */
+    float fx, fy, cx, cy; /* for pixels counted from the centre of the first */
 } passage;
 
 static passage passage_of(const adcgs_stereo_view *from, const adcgs_stereo_view *to)
@@ -39,7 +39,7 @@ static passage passage_of(const adcgs_stereo_view *from, const adcgs_stereo_view
     return p;
 }
 
-/** How far a pixel's image moves in another view from one depth to another, in pixels; 0 where it leaves the picture. */
+/** Distance in pixels between the positions of a pixel in another view at two depths; 0 if one is behind that camera. */
 static double travel(const adcgs_stereo_view *v, const adcgs_stereo_view *to, int px, int py, double nearest, double farthest)
 {
     double x[3], near_at[2] = { 0, 0 }, far_at[2] = { 0, 0 }, depth = 0;
@@ -62,30 +62,30 @@ void adcgs_sweep_set_planes(adcgs_sweep *s, double nearest, double farthest)
 
 /* ---- One neighbour, one plane ---- */
 
-/** The view's windows, or what moves in those that have it in the middle. */
+/** Statistics of the view's windows: of all pixels, or of the moving pixels in windows centred on one. */
 typedef struct windows {
-    float *over;          /* [s->h][s->w] one over the pixels that count; 0: there is no window */
+    float *over;          /* [s->h][s->w] 1 / number of pixels that count; 0: no window */
     float *mean, *spread; /* [s->h][s->w] */
 } windows;
 
-/** Arrays over the part and a margin of RADIUS about it, in which its edge is repeated. */
+/** Arrays over the part with a margin of RADIUS, filled by repetition at the image border. */
 typedef struct field {
     const adcgs_sweep *s;
-    int w, h;             /* with the margin */
+    int w, h;             /* including the margin */
     float *ray[2];        /* [w], [h] of the view's pixels */
     float *own;           /* [h][w][4] pixels of the view */
     float *grey;          /* [h][w] of the view */
-    windows window[2];    /* of all, and of what is thin and moves */
+    windows window[2];    /* all pixels; moving pixels of thin objects */
     float *mask;          /* [h][w] 1: a pixel of the view counts in the latter */
-    float *at[2];         /* [w] where a row of pixels lies in the neighbour */
-    float *other;         /* [w][4] and what is there */
-    uint8_t *inside;      /* [w] if it is in the picture */
-    uint8_t *still;       /* [w] and if nothing moves there */
+    float *at[2];         /* [w] position of a row of pixels in the neighbour */
+    float *other;         /* [w][4] colour there */
+    uint8_t *inside;      /* [w] 1: inside the image */
+    uint8_t *still;       /* [w] 1: background only */
     float *sum[4];        /* [h][w] neighbour's grey, its square, its product with the view's, difference of colour */
     float *down;          /* [s->h][w] sums of columns */
     float *total[4];      /* [s->h][s->w] sums of windows */
     uint8_t *seen;        /* [s->h][s->w] */
-    uint8_t *against;     /* [s->h][s->w] the view's moves, the neighbour's does not */
+    uint8_t *against;     /* [s->h][s->w] 1: the view shows moving content, the neighbour background */
     int16_t *cost;        /* [n_sources][s->h][s->w] */
 } field;
 
@@ -123,7 +123,7 @@ static void project_row(const field *f, const passage *p, float inverse, int y)
     }
 }
 
-/** The neighbour's pixels where a row lies in it; beside the picture, the nearest that are in it. */
+/** Samples the neighbour at the positions of a row; outside the image, at its nearest pixels. */
 static void sample_row(const field *f, const adcgs_stereo_view *v)
 {
     const float most_u = (float)(v->w - 1), most_v = (float)(v->h - 1);
@@ -131,12 +131,12 @@ static void sample_row(const field *f, const adcgs_stereo_view *v)
     for (int x = 0; x < f->w; x++) {
         float u = f->at[0][x], w = f->at[1][x];
         const int inside = u >= 0 && w >= 0 && u <= most_u && w <= most_v;
-        u = u > 0 ? ADCGS_MIN(u, most_u - 0.001f) : 0; /* also what is no number */
+        u = u > 0 ? ADCGS_MIN(u, most_u - 0.001f) : 0; /* also maps NaN to 0 */
         w = w > 0 ? ADCGS_MIN(w, most_v - 0.001f) : 0;
         const int iu = (int)u, iv = (int)w;
         const float a = u - (float)iu, b = w - (float)iv, *p = v->pixels + (size_t)iv * row + 4 * (size_t)iu, *q = p + row;
         const float p0 = (1 - a) * (1 - b), p1 = a * (1 - b), q0 = (1 - a) * b, q1 = a * b;
-        float value[4]; /* of its own, so that compilers know that nothing else is written meanwhile */
+        float value[4]; /* a local copy without aliasing, so that compilers can vectorise */
         for (int c = 0; c < 4; c++)
             value[c] = p0 * p[c] + p1 * p[4 + c] + q0 * q[c] + q1 * q[4 + c];
         memcpy(f->other + 4 * x, value, sizeof value);
@@ -145,7 +145,7 @@ static void sample_row(const field *f, const adcgs_stereo_view *v)
     }
 }
 
-/** The neighbour as the view would show it if all were on the plane. */
+/** Warps the neighbour to the view under the assumption that the scene is on the plane. */
 static void fetch(const field *f, const adcgs_stereo_view *source, const passage *p, float inverse)
 {
     for (int y = 0; y < f->h; y++) {
@@ -170,7 +170,7 @@ static void fetch(const field *f, const adcgs_stereo_view *source, const passage
     }
 }
 
-/** Lower costs to those of the view's windows. In whole numbers, which compilers compare in lanes. */
+/** Lowers the costs to those of the view's windows. Integers, because compilers vectorise their comparisons. */
 static void compare_windows(const field *f, const windows *own, int16_t *cost)
 {
     const int n = f->s->w * f->s->h;
@@ -178,7 +178,7 @@ static void compare_windows(const field *f, const windows *own, int16_t *cost)
         add_windows(f, f->sum[k], f->total[k]);
     for (int i = 0; i < n; i++) {
         const float over = own->over[i], mean = f->total[0][i] * over;
-        const float spread = fabsf(f->total[1][i] * over - mean * mean); /* less than 0 by rounding alone */
+        const float spread = fabsf(f->total[1][i] * over - mean * mean); /* negative by rounding only */
         const float both = f->total[2][i] * over - mean * own->mean[i];
         const float alike = both / sqrtf((spread + NOISE) * (own->spread[i] + NOISE));
         const int unlike = (int)((1 - alike) * UNLIKE_MOST), off = (int)(f->total[3][i] * (over * WINDOW) * COLOUR_SCALE);
@@ -188,7 +188,10 @@ static void compare_windows(const field *f, const windows *own, int16_t *cost)
     }
 }
 
-/** Of what is thin a window shows mostly what is behind, which lies elsewhere in the neighbour: it is compared alone, too. */
+/**
+ * The window of a thin object shows mostly background, which has another position in the neighbour. So moving pixels are also
+ * compared alone.
+ */
 static void compare(const field *f, int16_t *cost)
 {
     for (int i = 0; i < f->s->w * f->s->h; i++)
@@ -204,7 +207,7 @@ static void compare(const field *f, int16_t *cost)
 
 /* ---- All neighbours ---- */
 
-/** Mean of the better half of those that see a place. */
+/** Mean of the better half of the neighbours that see a position. */
 static int16_t better_half(const int16_t *cost, size_t stride, int n)
 {
     int best[ADCGS_SWEEP_SOURCES], sum = 0, seen = 0;
@@ -217,7 +220,7 @@ static int16_t better_half(const int16_t *cost, size_t stride, int n)
             best[k] = best[k - 1];
         best[k] = c;
     }
-    if (seen < 2 && n >= 2) /* one alone proves little */
+    if (seen < 2 && n >= 2) /* one neighbour alone is weak evidence */
         return (int16_t)(seen ? (best[0] + ADCGS_SWEEP_COST) / 2 : ADCGS_SWEEP_COST);
     const int half = (seen + 1) / 2;
     for (int i = 0; i < half; i++)
@@ -283,7 +286,7 @@ static adcgs_status field_alloc(field *f, const adcgs_sweep *s, adcgs_error *err
     return good ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
-/** Windows of the view's pixels that the mask has, of which they have at most so many. */
+/** Sets the windows over the pixels of the mask, if they contain at most `most` of them. */
 static void set_windows(field *f, windows *own, float most)
 {
     for (int i = 0; i < f->w * f->h; i++) {
@@ -303,7 +306,7 @@ static void set_windows(field *f, windows *own, float most)
         }
 }
 
-/** The view's pixel that lies at a field's, or the nearest that is in the picture. */
+/** Index of the view's pixel at a position of the field, clamped to the image. */
 static int pixel_of(const field *f, int i)
 {
     const adcgs_stereo_view *v = f->s->view;

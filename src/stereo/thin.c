@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Cells by bisection: their width is chosen so that as many are occupied as points are wanted. */
+/** \file Thinning by grid cells. Bisection finds the cell width that leaves the wanted number of points. */
 #include "stereo/thin.h"
 
 #include "grad/random.h"
@@ -8,9 +8,9 @@
 #include <stdlib.h>
 
 enum { ROUNDS = 16 };
-#define DETAIL_LEAST 0.02f /* contrast, of which cells have the width that is chosen */
+#define DETAIL_LEAST 0.02f /* contrast up to which cells have the chosen width */
 
-/** A point, its cell, and how far from the middle of the cell it is. */
+/** A point, its cell, and its squared distance from the cell's centre. */
 typedef struct entry {
     uint64_t cell;
     double off;
@@ -27,7 +27,7 @@ static int by_cell(const void *a, const void *b)
     return p->point < q->point ? -1 : p->point > q->point;
 }
 
-/** Edges are powers of sqrt 2 of a pixel's size, so that points of several views share cells. */
+/** Cell edges are powers of sqrt 2, so that points of several views share cells. */
 static void set_entry(entry *e, const adcgs_stereo_point *p, double width)
 {
     const double finer = sqrt((double)fminf(fmaxf(p->detail / DETAIL_LEAST, 1), 16));

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Fewer points, evenly: one for each cell of space, of cells that grow with the size of a pixel and shrink with detail. */
+/** \file Even thinning of points: one per grid cell. Cells grow with the size of a pixel and shrink with detail. */
 #ifndef ADCGS_STEREO_THIN_H
 #define ADCGS_STEREO_THIN_H
 
 #include "stereo/fuse.h"
 
-/** Leave at most `most` points, and not many fewer if there are more; in the order of their cells. */
+/** Leaves at most `most` points, ordered by cell, and not many fewer if the list is longer. */
 adcgs_status adcgs_stereo_thin(adcgs_stereo_list *list, uint32_t most, adcgs_error *error);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Starts, choice, growth. */
+/** \file Initial poses, choice of the best, and refinement. */
 #include "stereo/track.h"
 
 #include "stereo/direct.h"
@@ -9,19 +9,19 @@
 #include <stdlib.h>
 
 enum {
-    FEW = 120,           /* points of a body with which starts are tried */
-    MANY = 700,          /* with which a place is refined */
-    BEST = 6,            /* starts that are refined */
-    LOST_MOST = 4        /* moments in a row at which a body is not found, until it is given up */
+    FEW = 120,           /* points of a body for trying initial poses */
+    MANY = 700,          /* points of a body for refining a pose */
+    BEST = 6,            /* initial poses that are refined */
+    LOST_MOST = 4        /* maximum number of frames in a row without a match */
 };
-#define SHARE_GOOD 0.25  /* of points that have to be where they should be */
-#define LIGHT_GOOD 0.45  /* agreement of pictures */
-#define SHARE_SURE 0.35  /* beyond which no other starts are tried */
+#define SHARE_GOOD 0.25  /* minimum share of matching points */
+#define LIGHT_GOOD 0.45  /* minimum agreement of the images */
+#define SHARE_SURE 0.35  /* share and agreement from which no other initial pose is tried */
 #define LIGHT_SURE 0.52
-#define ABOUT 0.97       /* share of a score that is as good */
-#define APART 3.0        /* pixels between places about which turns are tried */
-#define TURN_STEP 0.26   /* radians between starts */
-enum { TURNS = 4, STARTS = 3 + 2 * 13 * 2 * TURNS }; /* steps of it, to each side; about two places in 13 directions */
+#define ABOUT 0.97       /* relative score that counts as equally good */
+#define APART 3.0        /* pixels: minimum distance between the positions about which rotations are tried */
+#define TURN_STEP 0.26   /* radians between rotations */
+enum { TURNS = 4, STARTS = 3 + 2 * 13 * 2 * TURNS }; /* steps to each side; 2 positions x 13 axes */
 
 static const adcgs_lay lay_far = { .reach = 14, .sharp = 5, .rounds = 6 };
 static const adcgs_lay lay_near = { .reach = 5, .sharp = 2.5, .rounds = 4 };
@@ -60,14 +60,14 @@ double adcgs_track_centre(const adcgs_track *t, double centre[3])
     return sqrt(far);
 }
 
-/* ---- One moment ---- */
+/* ---- One frame ---- */
 
-/** A body, the moment at which it is looked for, and the starts that fitted best so far. */
+/** A body, the frame to search, and the best poses so far. */
 typedef struct search {
     const adcgs_track *t;
     const adcgs_layers *l;
     adcgs_pool *pool;
-    adcgs_placing *start; /* [STARTS] to be tried */
+    adcgs_placing *start; /* [STARTS] initial poses to try */
     int moment, starts, n;
     adcgs_placing best[BEST];
 } search;
@@ -91,7 +91,7 @@ static void keep_best(search *s, const adcgs_placing *p)
 {
     int at = s->n;
     for (int i = 0; i < s->n; i++)
-        if (adcgs_track_between(s->t, &s->best[i].at, &p->at) < 2 * s->t->model.pixel) { /* the same once more */
+        if (adcgs_track_between(s->t, &s->best[i].at, &p->at) < 2 * s->t->model.pixel) { /* the same pose again */
             if (score_of(p) <= score_of(&s->best[i]))
                 return;
             at = i;
@@ -112,13 +112,13 @@ static void add_start(search *s, const adcgs_placing *from, const adcgs_rigid *a
     s->start[s->starts++].at = *at;
 }
 
-/** Turned in 13 directions and back. */
+/** Adds rotations about 13 axes to both sides. */
 static void add_turns(search *s, const adcgs_placing *from, const adcgs_rigid *base)
 {
     double rest[3], centre[3];
     adcgs_track_centre(s->t, rest);
     adcgs_rigid_apply(base, rest, centre);
-    for (int k = 14; k < 27; k++) /* of 27 corners, edges and faces of a cube those of one half */
+    for (int k = 14; k < 27; k++) /* one half of the 26 corners, edges and faces of a cube */
         for (int step = -TURNS; step <= TURNS; step++) {
             const double axis[3] = { k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1 };
             const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
@@ -147,7 +147,7 @@ static void try_start(void *arg, int i, int thread)
     adcgs_body_judge(m, &s->l->all[s->moment], views, near.stride, &s->start[i]);
 }
 
-/** All starts that were added. */
+/** Tries all initial poses that were added. */
 static void try_starts(search *s)
 {
     adcgs_pool_run(s->pool, try_start, s, s->starts);
@@ -156,7 +156,7 @@ static void try_starts(search *s)
     s->starts = 0;
 }
 
-/** To a fraction of a pixel. */
+/** Refines a pose to a fraction of a pixel. */
 static void refine(const adcgs_track *t, const adcgs_layers *l, int moment, int is_close, adcgs_placing *p)
 {
     adcgs_lay lay = lay_close;
@@ -185,9 +185,9 @@ static void choose(search *s, adcgs_placing *out)
             *out = s->best[i];
 }
 
-/* ---- From moment to moment ---- */
+/* ---- From frame to frame ---- */
 
-/** The known moments nearest to one; -1: there is none. */
+/** The two frames with a known pose nearest to a frame; -1: none. */
 static void find_known(const adcgs_track *t, const adcgs_layers *l, int moment, int out[2])
 {
     out[0] = out[1] = -1;
@@ -205,14 +205,14 @@ void adcgs_track_go_on(const adcgs_track *t, const adcgs_layers *l, int moment, 
     adcgs_rigid step;
     adcgs_rigid_inverse(&t->place[known[1]].at, &step);
     adcgs_rigid_then(&step, &t->place[known[0]].at, &step);
-    if (times < 0) /* a moment between the two */
+    if (times < 0) /* a frame between the two */
         adcgs_rigid_inverse(&step, &step);
     *out = t->place[known[0]].at;
     for (int i = 0; i < abs(times); i++)
         adcgs_rigid_then(out, &step, out);
 }
 
-/** Shifted by what points near it say of themselves. */
+/** Pose shifted by the mean velocity of the body's matching points. */
 static void drift(const adcgs_track *t, const adcgs_layers *l, int moment, int known, adcgs_rigid *out)
 {
     const double span = (double)(l->rig->moment[moment] - l->rig->moment[known]);
@@ -232,7 +232,7 @@ static void drift(const adcgs_track *t, const adcgs_layers *l, int moment, int k
         out->t[a] += sum[a] / n;
 }
 
-/** search: all but the moment's own. */
+/** search: all members except those of the frame. */
 static void find_at(adcgs_track *t, const adcgs_layers *l, int moment, int turns, search s)
 {
     adcgs_rigid base[2];
@@ -285,9 +285,9 @@ adcgs_status adcgs_track_run(adcgs_track *t, const adcgs_layers *l, int start, a
     return status;
 }
 
-/* ---- All moments once more ---- */
+/* ---- Second pass over the frames ---- */
 
-/** Where it is, or where it should be if it goes on as before: the latter, if pictures agree about as well. */
+/** Compares the current pose with the one that continues the motion, and prefers the latter if the images agree about as well. */
 static void look_again(adcgs_track *t, const adcgs_layers *l, int moment, int way)
 {
     const int known[2] = { moment - way, moment - 2 * way };

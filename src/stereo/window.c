@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Windows of pictures. */
+/** \file Windows of images. */
 #include "stereo/window.h"
 
 #include <math.h>
 
-/** Grey at a place, pixel centres at + 0.5; NaN where it is not known. */
+/** Grey value at a position, pixel centres at + 0.5; NaN if unknown. */
 static float grey_at(const adcgs_stereo_view *v, double x, double y)
 {
     const double u = x - 0.5, w = y - 0.5;
