@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Parts of the method left out, for comparison. */
+/** \file Ablation: the parts of the method that a run leaves out for comparison. */
 #include "train/settings.h"
 
-/** Each primitive becomes an anchor of its own. */
+/** Makes each primitive an anchor of its own. */
 static void leave_out_anchors(adcgs_train_config *c)
 {
     c->start_anchors = (uint32_t)ADCGS_MIN((uint64_t)c->start_anchors * c->params.k, ADCGS_ANCHORS_MAX);
@@ -25,7 +25,7 @@ static void leave_out(adcgs_train_config *c, int bits)
         leave_out_anchors(c);
     if (bits & REMOVAL) {
         c->prune_units_at = c->decide_at = 2;
-        c->still_below = 0; /* what pictures do not change is found before */
+        c->still_below = 0; /* static anchors are detected before decide_at */
     }
     if (bits & DENSIFICATION)
         c->start_anchors = c->max_anchors;
@@ -33,7 +33,7 @@ static void leave_out(adcgs_train_config *c, int bits)
 
 adcgs_status adcgs_train_leave_out(adcgs_train_config *c, const char *parts, adcgs_error *error)
 {
-    /* The last two are what parts were called before. */
+    /* The last two are earlier names of parts. */
     static const struct {
         const char *name;
         int bits;

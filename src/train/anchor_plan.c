@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How many anchors a scene needs at most. */
+/** \file Maximum number of anchors of a scene. */
 #include "train/anchor_plan.h"
 
 #include "metric/detail.h"

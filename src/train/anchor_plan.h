@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How many anchors a scene needs at most, from how much there is to see in its pictures. */
+/** \file Maximum number of anchors of a scene, from the amount of detail in its images. */
 #ifndef ADCGS_TRAIN_ANCHOR_PLAN_H
 #define ADCGS_TRAIN_ANCHOR_PLAN_H
 
@@ -7,13 +7,14 @@
 #include "train/config.h"
 
 /**
- * Unless it was chosen by hand, max_anchors becomes config->detail_anchors times the square root of the details (metric/detail.h)
- * of the mean of a few training pictures, and start_anchors no more than that; *details is their number, 0: nobody asked. Of what
- * a busy picture holds each thing is learnt less well in as many iterations, and pays for less. All parts of a scene have as many
- * as the whole. Where config->has_details says that they are known, no picture is looked at.
+ * Sets max_anchors, unless the user set it, and limits start_anchors to it. The value is config->detail_anchors times the square
+ * root of *details: the details (metric/detail.h) per image, averaged over a few training images. The growth is less than
+ * proportional: with the same number of iterations, each detail of a busy image is trained less and is worth fewer bits. All
+ * parts of a scene get the number of the whole scene. *details is 0 if it is not needed. With config->has_details, no image is
+ * read.
  */
 adcgs_status adcgs_plan_anchors(adcgs_train_config *config, const adcgs_scene *scene, uint32_t *details, adcgs_error *error);
-/** Details in the mean of a few of the pictures, evenly spread over those for training, as they are trained on. */
+/** Mean number of details of a few training images, evenly spread, at the size used for training. */
 adcgs_status adcgs_plan_details(const adcgs_scene *scene, int divide, uint32_t *details, adcgs_error *error);
 
 #endif

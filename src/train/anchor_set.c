@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The set of anchors that a run goes on with. */
+/** \file The next set of anchors of a run. */
 #include "train/anchor_set.h"
 
 #include "geom/geom.h"

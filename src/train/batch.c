@@ -5,7 +5,7 @@
 #include "train/look.h"
 #include "train/share.h"
 
-/* ---- What is summed: all gradients, and behind them the statistics ---- */
+/* ---- Sums: all gradients, followed by the statistics ---- */
 
 static size_t gradients_of(const adcgs_fmodel *f)
 {
@@ -15,7 +15,7 @@ static size_t gradients_of(const adcgs_fmodel *f)
     return n;
 }
 
-/** Room for one more sum, statistics zero. What there is was of another size where anchors have changed. */
+/** Prepares one more sum and clears its statistics. Buffers of another size, from before a change of the anchors, are freed. */
 static adcgs_status begin_sum(adcgs_trainer *t, int i, adcgs_train_stats *stats, adcgs_error *error)
 {
     adcgs_train_batch *const b = &t->batch;
@@ -32,7 +32,7 @@ static adcgs_status begin_sum(adcgs_trainer *t, int i, adcgs_train_stats *stats,
     return ADCGS_OK;
 }
 
-/** The model's gradients, which are 0 then. */
+/** Moves the model's gradients to a buffer and clears them. */
 static void take_gradients(adcgs_fmodel *f, float *to)
 {
     for (int i = 0; i < ADCGS_P_COUNT; to += f->param[i++].n) {
@@ -41,7 +41,7 @@ static void take_gradients(adcgs_fmodel *f, float *to)
     }
 }
 
-/** To the model its mean gradients, to the run its statistics. */
+/** Sets the model's gradients to the mean, and adds the statistics to those of the run. */
 static void give(adcgs_trainer *t, const float *sum)
 {
     const float share = 1 / (float)t->config.batch;
@@ -53,9 +53,9 @@ static void give(adcgs_trainer *t, const float *sum)
     t->stats.n += t->config.batch;
 }
 
-/* ---- The means that are rounded around, which each look of a pass that rounds renews from what the last iteration left ---- */
+/* ---- Means for rounding: each rounding pass updates them from the state that the previous iteration left ---- */
 
-/** Those of a group of parameters; behind all groups, the factors of steps that adapt. \return how many they are */
+/** The means of a group of parameters; after all groups, the factors of adaptive steps. \return their number */
 static size_t means_at(const adcgs_trainer *t, int i, float **at)
 {
     *at = i < ADCGS_P_ANCHOR ? t->pass->mu[i] : t->pass->factor;
@@ -92,9 +92,9 @@ static void put_means_back(adcgs_trainer *t)
     }
 }
 
-/* ---- Looks ---- */
+/* ---- View passes ---- */
 
-/** Those of the places from first to end; *n parts of the sum are there then. */
+/** Runs the view passes first..end-1. *n: number of partial sums that result. */
 static adcgs_status look_at(adcgs_trainer *t, double progress, uint32_t first, uint32_t end, adcgs_tree_part *parts, int *n,
                             adcgs_error *error)
 {

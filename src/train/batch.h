@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The views of an iteration: as many looks as the configuration says, and the mean of their gradients. Runs of a team look at
- * some of them each, and know all of it then.
+ * The view passes of an iteration, config.batch of them, and the mean of their gradients. The runs of a team share the passes and
+ * all receive the result.
  */
 #ifndef ADCGS_TRAIN_BATCH_H
 #define ADCGS_TRAIN_BATCH_H
@@ -9,9 +9,8 @@
 #include "train/state.h"
 
 /**
- * Look at an iteration's views: f->param[].g is the mean of their gradients, stats have what they show of primitives, and
- * trainer->batch.seen what else there is to say of each. Gradients and statistics are summed by a tree over the views
- * (tree_sum.h).
+ * Runs an iteration's view passes. f->param[].g receives the mean gradients, the statistics are updated, and trainer->batch.seen
+ * receives the results of each view. Gradients and statistics are summed by a tree over the views (tree_sum.h).
  */
 adcgs_status adcgs_batch_look(adcgs_trainer *trainer, double progress, adcgs_error *error);
 

@@ -6,14 +6,14 @@
 
 #include <math.h>
 
-/* Of values up to a quarter, four bins for a level of 255. */
+/* Histogram of values up to 1/4: four bins per level of 255. */
 enum { BINS = 256 };
 static const float BIN = 1.0f / 1024;
-/* SPREAD: least and greatest of what is one and the same black. MOST: beyond that it is taken for something dark. */
-static const float SPREAD = 4.0f / 255, MOST = 0.1f;
+static const float SPREAD = 4.0f / 255, /* maximum range of values that count as one black */
+    MOST = 0.1f;                        /* maximum value of black; brighter content is merely dark */
 static const double LEAST_SHARE = 0.01, SHARE = 0.2;
 
-/** Of a camera's channel. */
+/** Histogram of one channel of a camera. */
 typedef struct histogram {
     uint64_t bin[BINS], n;
 } histogram;
@@ -40,7 +40,7 @@ static adcgs_status gather(histogram (*of)[3], adcgs_trainer *t, adcgs_error *er
     return ADCGS_OK;
 }
 
-/** The mean of the darkest fifth; less than 0 unless it is black. */
+/** Mean of the darkest fifth of the pixels; negative if they are not black. */
 static float darkest(const histogram *h)
 {
     const double until = SHARE * (double)h->n;
@@ -58,7 +58,7 @@ static float darkest(const histogram *h)
     return -1;
 }
 
-/** level: room for a number of each camera. */
+/** level: buffer with one value per camera. */
 static void set_levels(adcgs_exposure *e, histogram (*of)[3], double *level)
 {
     for (uint32_t i = 0; i < e->n; i++)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Black levels of cameras. What a sensor, or light that strays in a lens, adds to all of a picture differs between cameras by
- * several of 255 levels. Filmed in the dark, that is as much as what there is to see, no gain makes up for it, and a model told
- * to match all cameras puts haze before those that are bright.
+ * Black levels of cameras. The sensor, or stray light in the lens, adds a constant to the whole image, which differs between
+ * cameras by several of 255 levels. In dark scenes this offset is as large as the content, and no gain compensates for it. A
+ * model that must match all cameras then puts haze in front of the brighter ones.
  */
 #ifndef ADCGS_TRAIN_BLACK_LEVEL_H
 #define ADCGS_TRAIN_BLACK_LEVEL_H
@@ -10,9 +10,10 @@
 #include "train/state.h"
 
 /**
- * What each camera of trainer->exposure adds, from the training pictures that are loaded: where all of them see black, which is
- * where the darkest fifth of what each takes lies within a few levels, the mean of that fifth, less that of the middle camera.
- * Elsewhere, and where a camera's brightness is taken as it is, 0: what is dark but not alike says nothing of a camera.
+ * Estimates the offset of each camera of trainer->exposure from the loaded training images. It applies only if all cameras see
+ * black: the darkest fifth of each camera's pixels lies within a few levels. The offset is the mean of that fifth minus the
+ * median over cameras. Otherwise all offsets are 0, because dark content of different brightness says nothing about a camera.
+ * They are also 0 where a camera's brightness is used unchanged.
  */
 adcgs_status adcgs_black_levels(adcgs_trainer *trainer, adcgs_error *error);
 

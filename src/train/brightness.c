@@ -4,10 +4,10 @@
 
 #include <math.h>
 
-/* Sum of the three channels' differences from the background above which a pixel of an image with alpha is of the object. */
+/* Minimum difference from the background, summed over the channels, of an object's pixel in images with alpha. */
 static const float OBJECT = 0.03f;
 
-/** Of a camera: the sum of values, and how many there are. */
+/** Sum and number of a camera's pixel values. */
 typedef struct amount {
     double sum, n;
 } amount;

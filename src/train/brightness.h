@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Brightness of the training images, which bounds the gains that training may find. A gain follows the model, and the model
- * follows the gain: without a bound from the images alone, both can leave the truth together.
+ * Brightness of the training images, which bounds the gains found in training. A gain follows the model, and the model follows
+ * the gain. Without a bound from the images alone, both can drift together.
  */
 #ifndef ADCGS_TRAIN_BRIGHTNESS_H
 #define ADCGS_TRAIN_BRIGHTNESS_H
@@ -9,8 +9,8 @@
 #include "train/state.h"
 
 /**
- * Bound the gains of trainer->exposure by the mean brightness of each camera's images, which are loaded. Masked and burnt pixels
- * do not count, nor does the background of images with alpha. Without gains (config.gains) the bound is 0.
+ * Bounds the gains of trainer->exposure by the mean brightness of each camera's loaded images. Masked and burnt pixels do not
+ * count, nor does the background of images with alpha. Without gains (config.gains) the bound is 0.
  */
 adcgs_status adcgs_bound_gains(adcgs_trainer *trainer, adcgs_error *error);
 

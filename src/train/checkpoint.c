@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Checkpoints: one walk over the state of a run visits every number that the
- * rest of the run depends on; saving and loading are its two visitors.
- * A file is "ADCGSCKP", a format number, the walk, and a CRC-32C of it all.
+ * Checkpoints: one walk over the state of a run visits every number that the rest of the run depends on. Saving and loading are
+ * its two visitors.
+ * A file is "ADCGSCKP", a format number, the walk, and a CRC-32C of the whole.
  */
 #include "train/checkpoint.h"
 
@@ -24,13 +24,13 @@ static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
 enum { FORMAT = 33 };
 
 typedef struct walk {
-    adcgs_buffer *out; /* storing in memory */
-    FILE *file;        /* or in a file, which needs none */
+    adcgs_buffer *out; /* storing to memory */
+    FILE *file;        /* or storing to a file, without memory */
     uint32_t crc;      /* of the bytes in the file */
-    int unwritten;     /* the file takes no more, which is no reason to change the state */
+    int unwritten;     /* writing to the file failed; the state must not change for it */
     adcgs_reader *in;  /* or restoring */
-    int failed;        /* then the bytes do not fit */
-    char differs[160]; /* restoring: what the run and the file do not agree on; "" if they do */
+    int failed;        /* the bytes do not fit */
+    char differs[160]; /* restoring: the mismatch between run and file; "" if there is none */
 } walk;
 
 static void visit(walk *w, void *data, size_t bytes)
@@ -51,7 +51,7 @@ static void visit(walk *w, void *data, size_t bytes)
         w->failed = 1;
 }
 
-/** What differs goes into the message; the first difference says the most. */
+/** Puts a mismatch into the message; only the first one is kept. */
 static void differ(walk *w, const char *format, ...) ADCGS_PRINTF(2, 3);
 static void differ(walk *w, const char *format, ...)
 {
@@ -63,7 +63,7 @@ static void differ(walk *w, const char *format, ...)
     va_end(arguments);
 }
 
-/** A run is bound to its target from where lambda has a say; before, it may go on with another. */
+/** The target binds a run once lambda affects it. Before, a run may continue with another target. */
 static void walk_target(walk *w, adcgs_trainer *t)
 {
     const adcgs_train_config *c = &t->config;
@@ -73,10 +73,10 @@ static void walk_target(walk *w, adcgs_trainer *t)
     visit(w, &target, sizeof target);
     visit(w, &value, sizeof value);
     if (t->lambda_used && (target != c->target || value != c->target_value))
-        differ(w, "saved with other options: another target, which has had its say");
+        differ(w, "saved with other options: another target, and the run depends on it by now");
 }
 
-/** All settings; a limit of time is none, and a run may go on with another. */
+/** All settings. The time limit is not one of them, so a run may continue with another. */
 static void walk_settings(walk *w, adcgs_trainer *t)
 {
     visit(w, &t->rounding, sizeof t->rounding);
@@ -87,18 +87,18 @@ static void walk_settings(walk *w, adcgs_trainer *t)
         double there = here;
         visit(w, &there, sizeof there);
         if (bound && there != here)
-            differ(w, "saved with other options: %s is %s there and %s here", s->name, adcgs_setting_print(s, there, texts[0]),
-                   adcgs_setting_print(s, here, texts[1]));
+            differ(w, "saved with other options: %s is %s in the file and %s here", s->name,
+                   adcgs_setting_print(s, there, texts[0]), adcgs_setting_print(s, here, texts[1]));
     }
 }
 
-/** A checksum that stands for a part of the scene. */
+/** Visits the checksum of a part of the scene. */
 static void visit_part(walk *w, const char *what, uint32_t crc)
 {
     uint32_t stored = crc;
     visit(w, &stored, sizeof stored);
     if (stored != crc)
-        differ(w, "saved with another scene: its %s are others than here", what);
+        differ(w, "saved with another scene: different %s", what);
 }
 
 static uint32_t add_camera(uint32_t crc, const adcgs_scene_view *v)
@@ -112,7 +112,7 @@ static uint32_t add_camera(uint32_t crc, const adcgs_scene_view *v)
     return adcgs_crc32c(crc, c->cam_to_world, sizeof c->cam_to_world);
 }
 
-/** All of the scene but its pictures: where these lie does not matter, and what they show is read only for a file. */
+/** Visits the scene except its images. Their location does not matter, and their contents are compared only for files. */
 static void walk_scene(walk *w, const adcgs_trainer *t)
 {
     const adcgs_scene *s = t->scene;
@@ -120,7 +120,7 @@ static void walk_scene(walk *w, const adcgs_trainer *t)
     uint64_t n = t->n_views;
     visit(w, &n, sizeof n);
     if (n != t->n_views)
-        differ(w, "saved with another scene: %llu training view%s there and %u here", (unsigned long long)n, adcgs_s(n),
+        differ(w, "saved with another scene: %llu training view%s in the file and %u here", (unsigned long long)n, adcgs_s(n),
                t->n_views);
     for (uint32_t i = 0; i < t->n_views; i++) {
         const adcgs_scene_view *v = &s->views[ADCGS_SPLIT_TRAIN][i];
@@ -129,19 +129,19 @@ static void walk_scene(walk *w, const adcgs_trainer *t)
         times = adcgs_crc32c(times, &v->frame, sizeof v->frame);
     }
     visit_part(w, "cameras", cameras);
-    visit_part(w, "moments", adcgs_crc32c(times, &s->duration, sizeof s->duration));
+    visit_part(w, "timestamps", adcgs_crc32c(times, &s->duration, sizeof s->duration));
     visit_part(w, "background", adcgs_crc32c((uint32_t)s->has_alpha, s->background, sizeof s->background));
     visit_part(w, "initial points", adcgs_crc32c(0, s->points.position, s->points.n * sizeof *s->points.position));
 }
 
-/** The model that it goes on with is a part of what a run is given. */
+/** The model of the previous segment is part of a run's input. */
 static void walk_before(walk *w, const adcgs_trainer *t)
 {
     uint8_t digest[sizeof t->before];
     memcpy(digest, t->before, sizeof digest);
     visit(w, digest, sizeof digest);
     if (memcmp(digest, t->before, sizeof digest))
-        differ(w, "saved with another segment before it");
+        differ(w, "saved with another previous segment");
 }
 
 static void walk_config(walk *w, adcgs_trainer *t)
@@ -184,7 +184,7 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
     visit(w, &t->decisions, sizeof t->decisions);
 }
 
-/** Hidden layers may be narrower than they began. */
+/** Hidden layers may be narrower than at the start. */
 static void walk_width(walk *w, adcgs_fmodel *f, int group)
 {
     const int from[ADCGS_P_COUNT] = { [ADCGS_P_THETA] = f->shape.theta_width, [ADCGS_P_OMEGA] = f->shape.omega_width,
@@ -241,7 +241,7 @@ static void walk_average(walk *w, adcgs_trainer *t)
         visit(w, a->mean, a->size * sizeof *a->mean);
 }
 
-/** The cameras are the scene's. */
+/** The number of cameras follows from the scene. */
 static void walk_exposure(walk *w, adcgs_trainer *t)
 {
     if (t->exposure.n)
@@ -250,7 +250,7 @@ static void walk_exposure(walk *w, adcgs_trainer *t)
         visit(w, &t->exposure.cameras[i], sizeof t->exposure.cameras[i]);
 }
 
-/** What a run may go back to; it is a checkpoint itself, which has none. */
+/** The state to return to in a rate search. It is itself a checkpoint without such a state. */
 static void walk_begin(walk *w, adcgs_trainer *t)
 {
     uint64_t n = t->begin.size;
@@ -287,13 +287,13 @@ adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out
     return out->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a checkpoint") : ADCGS_OK;
 }
 
-/** Give the model the stored number of anchors and their places; parameters follow. */
+/** Sets the stored number of anchors and their positions; the parameters follow. */
 static adcgs_status restore_anchors(walk *w, adcgs_trainer *t, adcgs_error *error)
 {
     uint32_t n = 0;
     visit(w, &n, sizeof n);
     if (w->failed || n == 0 || n > adcgs_reader_left(w->in) / 12)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%u anchors do not fit its size", n);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%u anchors do not match the size of the data", n);
     uint32_t(*pos)[3] = adcgs_alloc(NULL, n, sizeof *pos, error);
     uint32_t *source = adcgs_alloc(NULL, n, sizeof *source, error);
     adcgs_status status = pos && source ? ADCGS_OK : adcgs_alloc_status(error);
@@ -338,17 +338,17 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
 
 /* ---- Files ---- */
 
-/** The images' digest; their files are read once, when it is first asked for. */
+/** Computes the digest of the images. Their files are read once, on first use. */
 static adcgs_status find_content(const adcgs_trainer *trainer, adcgs_error *error)
 {
-    adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* nothing that the run depends on */
+    adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* the digest does not affect the run */
     if (!t->has_content)
         ADCGS_TRY(adcgs_scene_content(t->scene, ADCGS_SPLIT_TRAIN, t->content, error));
     t->has_content = 1;
     return ADCGS_OK;
 }
 
-/** A file of the present state, or of a snapshot. Nothing is gathered in memory, since that may be exhausted. */
+/** Writes a file of the current state or of a snapshot. It allocates no memory, which may be exhausted. */
 static adcgs_status save(const adcgs_trainer *t, const adcgs_buffer *snapshot, const char *path, adcgs_error *error)
 {
     adcgs_atomic atomic;
@@ -389,7 +389,7 @@ adcgs_status adcgs_trainer_rescue(const adcgs_trainer *t, const char *path, adcg
     return save(t, t->torn ? &t->snapshot : NULL, path, error);
 }
 
-/** A file's contents, whole. */
+/** Restores from the contents of a file. */
 static adcgs_status restore_file(adcgs_trainer *t, const uint8_t *data, size_t size, adcgs_error *error)
 {
     const size_t head = sizeof magic + sizeof t->content;
@@ -399,12 +399,12 @@ static adcgs_status restore_file(adcgs_trainer *t, const uint8_t *data, size_t s
         return adcgs_fail(error, ADCGS_ERR_DATA, "damaged: its checksum does not match");
     static const uint8_t unknown[sizeof t->content];
     ADCGS_TRY(adcgs_trainer_restore(t, data + head, size - 4 - head, error));
-    if (!memcmp(data + sizeof magic, unknown, sizeof unknown)) /* a run that failed did not read them for this */
+    if (!memcmp(data + sizeof magic, unknown, sizeof unknown)) /* a failed run did not read the images */
         return ADCGS_OK;
     ADCGS_TRY(find_content(t, error));
     if (memcmp(data + sizeof magic, t->content, sizeof t->content))
         return adcgs_fail(error, ADCGS_ERR_DATA,
-                          "saved with another scene: the training pictures' files hold something else now");
+                          "saved with another scene: the files of the training images have changed");
     return ADCGS_OK;
 }
 
@@ -420,7 +420,7 @@ adcgs_status adcgs_trainer_load(adcgs_trainer *t, const char *path, adcgs_error 
     return status;
 }
 
-/* Bytes before the text of trials: magic, content, format, views, four parts of the scene, the segment before, target. */
+/* Bytes before the text of trials: magic, content, format, views, four parts of the scene, previous segment, target. */
 enum { TRIALS_AT = sizeof magic + 16 + 8 + 8 + 4 * 4 + 16 + 1 + 4 + 8 };
 
 adcgs_status adcgs_checkpoint_adopt(adcgs_train_config *config, const char *path, adcgs_error *error)

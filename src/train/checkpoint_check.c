@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a checkpoint may hold. */
+/** \file Validation of checkpoints. */
 #include "train/checkpoint_check.h"
 
 #include "geom/geom.h"
@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { EXPONENT_MAX = 40 }; /* as a stream has it */
+enum { EXPONENT_MAX = 40 }; /* bound of the stream syntax */
 
 const char *adcgs_checkpoint_check_places(const adcgs_fmodel *f, const uint32_t (*pos)[3], uint32_t n)
 {
@@ -16,13 +16,13 @@ const char *adcgs_checkpoint_check_places(const adcgs_fmodel *f, const uint32_t 
         const int outside = (pos[i][0] | pos[i][1] | pos[i][2]) >> f->shape.depth != 0;
         const uint64_t code = outside ? 0 : adcgs_morton(pos[i]);
         if (outside || (i > 0 && code <= before))
-            return "an anchor is outside the grid, or out of its order";
+            return "an anchor is outside the grid, or not in Morton order";
         before = code;
     }
     return NULL;
 }
 
-/** Each is yes (1) or no (0). */
+/** True if each value is 0 or 1. */
 static int are_flags(const float *v, size_t n)
 {
     int bad = 0;
@@ -39,7 +39,7 @@ static int are_at_most(const uint8_t *v, size_t n, int most)
     return !bad;
 }
 
-/** Rows and views that training has reached. */
+/** Checks the rows and views that training has reached. */
 static int curriculum_is_sound(const adcgs_trainer *t)
 {
     const adcgs_curriculum *c = &t->curriculum;
@@ -53,7 +53,7 @@ static int flags_are_sound(const adcgs_trainer *t)
     return are_at_most(flags, sizeof flags, 1) && t->slimmed <= 2 && (!t->frozen || t->rounding);
 }
 
-/** Numbers that steer. Those that are learnt need not be finite: a run that finds one which is not goes back by itself. */
+/** Checks the control variables. Trained values need not be finite: a run that finds one that is not rolls back by itself. */
 static int numbers_are_sound(const adcgs_trainer *t)
 {
     const double numbers[] = { (double)t->lr_scale, t->contrast, t->lambda, t->least_mse, t->elapsed.clock, t->elapsed.cpu };
@@ -63,7 +63,7 @@ static int numbers_are_sound(const adcgs_trainer *t)
     return t->lr_scale <= 1;
 }
 
-/** Steps of weights: exponents that a stream has, or none. */
+/** Checks weight steps: an exponent that a stream can hold, or none. */
 static int steps_are_sound(const adcgs_mlp *m)
 {
     for (int l = 0; m->n && l <= m->hidden; l++)
@@ -76,12 +76,12 @@ static const char *check_anchors(const adcgs_fmodel *f)
 {
     const size_t lanes = (size_t)f->groups * ADCGS_LANES;
     if (!are_flags(f->keep, lanes * f->params.k) || !are_flags(f->moving, lanes) || !are_flags(f->learns, lanes))
-        return "what an anchor does is neither yes nor no";
+        return "an anchor's flag is neither 0 nor 1";
     if (!are_at_most(f->body, lanes, f->params.bodies) || !are_at_most(f->tier, lanes, f->finest))
-        return "an anchor is of a body or a tier that there is not";
+        return "an anchor belongs to a body or a tier that does not exist";
     if (!are_at_most(f->growth, sizeof f->growth, ADCGS_GROWTH_MAX) ||
         !are_at_most(f->density, sizeof f->density, ADCGS_SHAPES - 1))
-        return "growth or a density that there is not";
+        return "a growth or a density is out of range";
     return NULL;
 }
 
@@ -91,13 +91,13 @@ const char *adcgs_checkpoint_check(const adcgs_trainer *t)
     if (wrong)
         return wrong;
     if (!curriculum_is_sound(t))
-        return "it has learnt of more of time than there is";
+        return "the time curriculum is out of range";
     if (!flags_are_sound(t))
-        return "it is at a stage that there is not";
+        return "the stage of the run is invalid";
     if (!numbers_are_sound(t))
-        return "a number that steers the run is out of its range";
+        return "a control variable of the run is out of range";
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         if (!steps_are_sound(&t->f->mlp[i]))
-            return "a network's weights have a step that there is not";
+            return "a network's weight step is out of range";
     return NULL;
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Contrast of a scene, and what lambda makes of it. */
+/** \file Contrast of a scene, and its effect on lambda. */
 #include "train/contrast.h"
 
 #include <math.h>
 
 enum { PICTURES_MOST = 64 };
-/** Pictures of one colour leave a price to be paid, too. */
+/** Bounds of the factor; images of one colour still need a positive lambda. */
 static const double LEAST = 0.1, MOST = 4;
 
 adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_error *error)
@@ -19,7 +19,7 @@ adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_erro
         ADCGS_TRY(adcgs_pictures_get(t->pictures, view, t->taken, error));
         for (size_t c = 0; c < 3; c++)
             for (size_t j = c * plane; j < (c + 1) * plane; j++) {
-                if (isnan(t->taken[j])) /* behind a mask, or beyond what a lens shows */
+                if (isnan(t->taken[j])) /* masked, or outside the lens's field */
                     continue;
                 sum[c] += (double)t->taken[j];
                 square += (double)t->taken[j] * (double)t->taken[j];

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Contrast of a scene. Errors of pictures are absolute, so one lambda would code what was filmed in the dark coarsely, and in
- * glaring light finely. Where none is asked for, it follows how much the pictures vary.
+ * Contrast of a scene. Image errors are absolute, so one lambda would code dark scenes coarsely and bright scenes finely. Unless
+ * the user sets lambda, it follows the contrast of the images.
  */
 #ifndef ADCGS_TRAIN_CONTRAST_H
 #define ADCGS_TRAIN_CONTRAST_H
 
 #include "train/state.h"
 
-/** Standard deviation of the training pictures' values at which the presets' lambda holds as it is. */
+/** Standard deviation of the training images' values at which the presets' lambda applies unchanged. */
 #define ADCGS_CONTRAST_NOMINAL 0.22
 
 /**
- * Of up to 64 of the training pictures that are loaded, evenly chosen, about their mean, the mean square of the channels. What is
- * behind masks has no part in it; 0 where all is.
+ * RMS over the channels of the standard deviation, from up to 64 loaded training images, evenly chosen. Masked pixels do not
+ * count; 0 if all pixels are masked.
  */
 adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_error *error);
 
 /**
- * Begin with the lambda that was asked for, or else with the preset's times the contrast, relative to the nominal one. The
- * contrast is measured by the first call of a run, and stays.
+ * Sets lambda to the user's value or, without one, to the preset's times the relative contrast. The first call of a run measures
+ * the contrast, which then stays.
  */
 adcgs_status adcgs_contrast_lambda(adcgs_trainer *t, adcgs_error *error);
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Curvature of the loss by the anchors' values. For a picture I of P values and J = dI/dy, the sum of squares of J's column is
- * the mean of (J^T s)^2 over random signs s: one backward pass with s for the picture's gradient gives it for every value at
- * once. What the squares are worth in loss is then measured: values move up or down at random, and back.
+ * Curvature of the loss with respect to anchor values. Let I be an image of P values and J = dI/dy. The sum of squares of a
+ * column of J is the mean of (J^T s)^2 over random signs s. One backward pass with s as the image's gradient gives it for all
+ * values at once. The scale from squares to loss is then measured: values are moved up or down at random, and back.
  */
 #include "train/curvature.h"
 
@@ -14,10 +14,13 @@
 
 enum { PROBES = 2, MEASURE_VIEWS = 32 };
 
-/* Of a step: what all values move by when loss is measured. About the error of rounding, lest the loss bends otherwise there. */
+/*
+ * Share of a step by which all values move to measure the loss. Close to the rounding error, because the curvature may differ at
+ * other distances.
+ */
 static const float reach = 0.25f;
 
-/** Signs of the picture's gradient; P squares of them sum to 1. */
+/** Random signs as the image's gradient; the P squares sum to 1. */
 static void random_signs(float *grad, size_t n, uint32_t seed)
 {
     const float size = (float)sqrt(1.0 / (double)n);
@@ -25,7 +28,7 @@ static void random_signs(float *grad, size_t n, uint32_t seed)
         grad[i] = adcgs_mix32(seed ^ (uint32_t)i) & 1 ? size : -size;
 }
 
-/** Take the gradients' squares, scaled, and clear them. */
+/** Adds the scaled squares of the gradients, and clears them. */
 static void take_squares(adcgs_fmodel *f, float *const h[ADCGS_P_ANCHOR], float scale)
 {
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
@@ -56,7 +59,7 @@ static adcgs_status project_views(adcgs_trainer *t, float *const h[ADCGS_P_ANCHO
     return ADCGS_OK;
 }
 
-/** Move a group's values to still, and a part of a step in the direction of random signs. */
+/** Sets a group's values to `still` plus a part of a step with random signs. */
 static void move_values(adcgs_trainer *t, int group, const float *still, float direction)
 {
     const adcgs_fmodel *f = t->f;
@@ -68,7 +71,7 @@ static void move_values(adcgs_trainer *t, int group, const float *still, float d
     }
 }
 
-/** The loss that moving a group costs, the mean of both directions, and what h says of it. */
+/** Loss increase from moving a group, averaged over both directions, and the increase that h predicts. */
 static adcgs_status measured_move(adcgs_trainer *t, int group, const float *h, double still_loss, double *seen, double *said,
                               adcgs_error *error)
 {
@@ -96,8 +99,8 @@ static adcgs_status measured_move(adcgs_trainer *t, int group, const float *h, d
 }
 
 /**
- * Factors from loss said to loss seen. One that is no positive number, or far from that of all groups together, is noise: a
- * group that hardly matters.
+ * Calibrates h by the ratio of measured to predicted loss. A ratio that is not positive, or far from the ratio of all groups, is
+ * noise of a group with little effect.
  */
 static adcgs_status calibrate(adcgs_trainer *t, float *const h[ADCGS_P_ANCHOR], double ratio[ADCGS_P_ANCHOR], adcgs_error *error)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Decisions on what a model needs. */
+/** \file Pruning and detection of static anchors. */
 #include "train/decide.h"
 
 #include "train/anchor_set.h"
@@ -10,13 +10,13 @@
 #include <math.h>
 
 enum { DECIDE_TIMES = 16, DECIDE_VIEWS = 32 };
-#define FAINT_SHARE 0.1
-#define FAINT_MEAN 0.4
-#define CHANGING_SHARE 0.01F
+#define FAINT_SHARE 0.1      /* of the rendered weight: maximum of the faint primitives dropped */
+#define FAINT_MEAN 0.4       /* mean opacity of rendered primitives below which a scene counts as faint */
+#define CHANGING_SHARE 0.01F /* of an anchor's rendered weight: maximum at changing pixels, if the anchor is static */
 
 /**
- * What is drawn is as opaque as this in the mean, at most 1 of FAINT_MEAN. In a scene made of faint layers none of them moves by
- * much of a picture, but all that show one thing move together.
+ * Weighted mean opacity of the rendered primitives relative to FAINT_MEAN, at most 1. In a scene of faint layers each layer has
+ * little effect on the image, but the layers of one object move together.
  */
 static float usual_opacity(const adcgs_trainer *t)
 {
@@ -33,8 +33,8 @@ static float usual_opacity(const adcgs_trainer *t)
 }
 
 /**
- * Largest effect of time on each anchor's primitives. 1 is half a pixel of way, or 0.03 of colour, for an opaque one, or 0.03
- * of opacity, where things are opaque: what lies below is seen as noise, and costs every frame its networks.
+ * Largest effect of time on each anchor's primitives. For an opaque primitive in an opaque scene, 1 is half a pixel of motion,
+ * 0.03 of colour, or 0.03 of opacity. Smaller effects look like noise and cost network evaluations in every frame.
  */
 static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error *error)
 {
@@ -79,8 +79,8 @@ adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 0, &stopped, error));
     ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 1, &moving, error));
     /*
-     * Seven bits a weight; hidden units that do not pay go later, and where little moves a tenth of them is left. A hundredth of
-     * the loss is what networks gain by learning the noise of each picture.
+     * Seven bits per weight. Unit pruning later leaves a tenth of the hidden weights where little moves. Networks can gain a
+     * hundredth of the loss by fitting the noise of each image.
      */
     const size_t weights = (f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n) / 10 + f->mlp[ADCGS_P_TIME].n;
     t->decisions.loss_still = stopped;
@@ -91,7 +91,7 @@ adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** What nothing follows costs nothing in a stream that has a time table for the sake of other segments. */
+/** Clears the time table if no anchor uses it. It costs nothing then, although other segments require it to be present. */
 static void clear_time_table(adcgs_fmodel *f)
 {
     adcgs_param *z = &f->param[ADCGS_P_TIME];
@@ -100,7 +100,7 @@ static void clear_time_table(adcgs_fmodel *f)
         memset(values[i], 0, z->n * sizeof(float));
 }
 
-/** Make an anchor static unless it is settled; 1: it moved before. */
+/** Makes an anchor static unless it is frozen. Returns 1 if it was moving. */
 static uint32_t rest(const adcgs_fmodel *f, uint32_t anchor)
 {
     const int moved = f->moving[anchor] != 0 && f->learns[anchor] != 0;
@@ -123,7 +123,7 @@ adcgs_status adcgs_rest_unchanging(adcgs_trainer *t, adcgs_error *error)
     return status;
 }
 
-/** Mark the anchors that time does not touch. */
+/** Marks anchors on which time has no visible effect. */
 static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_fmodel *f = t->f;
@@ -143,9 +143,9 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
 }
 
 /**
- * Primitives that go. What covers next to nothing does. So do faint ones, the faintest first: they cost the most time, fit single
- * views and are soon replaced; but where a scene is made of them, as a dim one is, no more of them than make FAINT_SHARE of what
- * is drawn, since nothing would replace that.
+ * Drops primitives. Those with nearly no coverage go. Faint ones go too, the faintest first: they cost the most time, overfit
+ * single views, and are soon replaced. In a scene made of faint primitives, the dropped ones amount to at most FAINT_SHARE of the
+ * render, since nothing would replace more.
  */
 static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Why a model is as large as it is. */
+/** \file The statistics behind a model's size. */
 #include "train/decisions.h"
 
 #include <stdio.h>

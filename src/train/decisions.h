@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Why a model is as large as it is: what a run decided, and from what, for people to read. A stream tells it as metadata, and
- * nothing of a run depends on it.
+ * The decisions of a run that explain the model's size, for users. A stream contains them as metadata, and the run does not
+ * depend on them.
  */
 #ifndef ADCGS_TRAIN_DECISIONS_H
 #define ADCGS_TRAIN_DECISIONS_H
@@ -10,21 +10,21 @@
 #include <stdint.h>
 
 typedef struct adcgs_decisions {
-    uint64_t points;     /**< given with the scene, or matched between its pictures, to begin at */
-    uint32_t details;    /**< of a picture, where these say how many anchors there may be, and so many: max_anchors */
-    uint32_t allowed;
-    uint32_t began;      /**< anchors to begin with, and the most there were at once */
-    uint32_t most;
-    uint32_t refused;    /**< primitives beside which more would have grown at the last densification but for max_anchors */
-    uint32_t idle;       /**< anchors that went since next to nothing of them was to be seen */
-    uint32_t unseen, faint; /**< primitives that went when it was decided what stays */
-    uint32_t unchanging; /**< anchors that moved and became static since pictures do not change where they are drawn, */
-    uint32_t unmoved;    /**< or since no more than what can be seen of them changed */
-    uint32_t units;      /**< hidden units of networks that went since they did not pay */
-    double loss_still, loss_moving; /**< of training pictures without motion and with it, when that was weighed; 0: it was not */
+    uint64_t points;     /**< initial points, from the scene or from matching */
+    uint32_t details;    /**< details per image, if they set max_anchors */
+    uint32_t allowed;    /**< max_anchors */
+    uint32_t began;      /**< initial number of anchors */
+    uint32_t most;       /**< maximum number of anchors at any time */
+    uint32_t refused;    /**< primitives that could not grow at the last densification, because of max_anchors */
+    uint32_t idle;       /**< anchors pruned because they were hardly visible */
+    uint32_t unseen, faint; /**< primitives dropped by adcgs_decide() */
+    uint32_t unchanging; /**< anchors made static because the images do not change where they are rendered */
+    uint32_t unmoved;    /**< anchors made static because their change is not visible */
+    uint32_t units;      /**< hidden units of networks that were pruned */
+    double loss_still, loss_moving; /**< training loss without and with motion, when compared; 0: not compared */
 } adcgs_decisions;
 
-/** A figure of them as it is called in a stream. */
+/** One value, with its name in a stream. */
 typedef struct adcgs_decision {
     const char *name;
     double value;
@@ -33,7 +33,7 @@ typedef struct adcgs_decision {
 enum { ADCGS_DECISIONS = 14, ADCGS_DECISIONS_TEXT = 320 };
 
 void adcgs_decisions_list(const adcgs_decisions *decisions, adcgs_decision list[ADCGS_DECISIONS]);
-/** "points=18231 began=4500 ...", without those that are 0. */
+/** "points=18231 began=4500 ...", without values of 0. */
 void adcgs_decisions_tell(const adcgs_decisions *decisions, char text[ADCGS_DECISIONS_TEXT]);
 
 #endif

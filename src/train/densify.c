@@ -21,7 +21,7 @@ typedef struct cells {
     size_t mask;
 } cells;
 
-/** Insert a cell; returns 0 if it was there already. */
+/** Inserts a cell; returns 0 if the set contains it. */
 static int cells_add(cells *c, const uint32_t pos[3])
 {
     const uint32_t cell[3] = { pos[0] >> 2, pos[1] >> 2, pos[2] >> 2 };
@@ -55,7 +55,7 @@ static uint32_t find_candidates(const adcgs_trainer *t, adcgs_ranked *list)
     return n;
 }
 
-/** The cell of a place in scene units; 0 if it is outside the grid. */
+/** Cell of a position in scene units. Returns 0 if it is outside the grid. */
 static int cell_of(const adcgs_fmodel *f, const float x[3], uint32_t pos[3])
 {
     const uint32_t side = 1u << f->shape.depth;
@@ -81,7 +81,7 @@ static void grow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const a
     t->decisions.refused = n - i;
 }
 
-/* ---- Growth where something is missing ---- */
+/* ---- Growth from residuals ---- */
 
 enum { MISSING_MOST = 512, MOMENT_MOST = 256 };
 
@@ -101,7 +101,7 @@ static uint32_t nearest_anchor(const adcgs_fmodel *f, const uint32_t pos[3])
     return nearest;
 }
 
-/** Take in the places that are free, moved to the front; returns how many. */
+/** Adds anchors at free positions and moves these to the front. \return their number. */
 static uint32_t sow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, adcgs_residual *places, uint32_t n, cells *occupied)
 {
     uint32_t taken = 0;
@@ -115,7 +115,7 @@ static uint32_t sow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, adcg
     return taken;
 }
 
-/** The anchor at a place in scene units; as many as there are if there is none. */
+/** Index of the anchor at a position in scene units; f->n if there is none. */
 static uint32_t anchor_at(const adcgs_fmodel *f, const float x[3])
 {
     uint32_t pos[3], at = 0;
@@ -125,7 +125,7 @@ static uint32_t anchor_at(const adcgs_fmodel *f, const float x[3])
     return at;
 }
 
-/** Anchors where something was missing begin as small as a pixel, in its colour, with no features. */
+/** Initialises anchors grown from residuals: one pixel in size, with the image's colour and no features. */
 static void dress(adcgs_fmodel *f, const adcgs_residual *places, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -141,7 +141,7 @@ static void dress(adcgs_fmodel *f, const adcgs_residual *places, uint32_t n)
     }
 }
 
-/** Where a point is while its body is at rest. */
+/** Position of a point in its body's rest pose. */
 static void rest(const adcgs_trainer *t, const adcgs_stereo_point *point, float x[3])
 {
     double place[3];
@@ -150,7 +150,7 @@ static void rest(const adcgs_trainer *t, const adcgs_stereo_point *point, float 
         x[a] = (float)place[a];
 }
 
-/** The same for points of a moment: any voxel that is free will do, since neighbours may live at other moments. */
+/** The same for points of a frame. Any free voxel will do, because neighbours may have other lifetimes. */
 static uint32_t sow_moments(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const adcgs_stereo_point **points,
                             uint32_t n, cells *occupied)
 {
@@ -165,7 +165,7 @@ static uint32_t sow_moments(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budg
             at++;
         if (at < s->n)
             continue;
-        cells_add(occupied, pos); /* so that nothing else grows into the same voxel */
+        cells_add(occupied, pos); /* blocks other growth in this voxel */
         adcgs_anchor_set_add(s, pos, nearest_anchor(t->f, pos), 1);
         points[taken++] = points[i];
     }
@@ -195,13 +195,13 @@ double adcgs_densify_budget(const adcgs_train_config *c, double progress)
     return from + (c->max_anchors - from) * ramp;
 }
 
-/** What a densification works with. */
+/** Working memory of a densification. */
 typedef struct workspace {
     adcgs_anchor_set next;
     cells occupied;
     adcgs_ranked *list;        /* [slots] */
     adcgs_residual *missing; /* [MISSING_MOST] */
-    const adcgs_stereo_point **moment; /* [MOMENT_MOST] points of moments at which something is wrong */
+    const adcgs_stereo_point **moment; /* [MOMENT_MOST] points of frames with large errors */
 } workspace;
 
 static void workspace_clear(workspace *w)
@@ -233,7 +233,7 @@ static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_
 static void keep_anchors(adcgs_trainer *t, workspace *w)
 {
     for (uint32_t i = 0; i < t->f->n; i++)
-        if (t->f->learns[i] == 0 || !adcgs_anchor_is_idle(t, i, 0.2)) { /* what is settled costs nothing */
+        if (t->f->learns[i] == 0 || !adcgs_anchor_is_idle(t, i, 0.2)) { /* frozen anchors cost nothing */
             cells_add(&w->occupied, t->f->pos[i]);
             adcgs_anchor_set_add(&w->next, t->f->pos[i], i, 0);
         }
@@ -243,8 +243,8 @@ static void keep_anchors(adcgs_trainer *t, workspace *w)
 }
 
 /**
- * Random points fill the space that cameras see; a scene's own, as matched between pictures, leave out what is plain or seldom
- * seen. Gaps are looked for while pictures are small.
+ * True if the scene's points may leave gaps. Random points fill the visible space, but matched points omit plain or seldom seen
+ * regions. Gaps are searched only while images are small.
  */
 static int leaves_gaps(const adcgs_trainer *t, double progress)
 {
@@ -268,7 +268,7 @@ adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error
                                &w.occupied);
         n_missing = sow(t, &w.next, budget, w.missing, n_missing, &w.occupied);
         adcgs_drop_floaters(t);
-        adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE }); /* canonical places */
+        adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE }); /* canonical positions */
         grow(t, &w.next, budget, w.list, find_candidates(t, w.list), &w.occupied);
         t->decisions.most = ADCGS_MAX(t->decisions.most, w.next.n);
         status = adcgs_anchor_set_adopt(t, &w.next, error);

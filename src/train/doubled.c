@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures that come twice, as of the time that they show. */
+/** \file Duplicated images get the timestamp of their content. */
 #include "config.h"
 
 #include "train/doubled.h"

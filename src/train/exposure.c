@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Brightness of cameras. */
+/** \file Exposure of cameras. */
 #include "train/exposure.h"
 
 #include "data/by_camera.h"
@@ -8,16 +8,17 @@
 #include <math.h>
 
 enum { PICTURES_LEAST = 4 };
-/*
- * KEEP: share of the sums that is kept from one image of a camera to its next; KEEP_PATIENT: where each image is a camera of its
- * own, which is seen once in an epoch, and would be hundreds of iterations behind the model. DOUBT: logarithm of a gain that is
- * taken for none, as with a Laplace prior: view-dependent light alone makes gains of 0.1.
- */
-static const double KEEP = 0.9, KEEP_PATIENT = 0.3, DOUBT = 0.03;
+static const double
+    /* Decay of the sums from one image of a camera to its next. */
+    KEEP = 0.9,
+    /* The same if each image is its own camera, seen once per epoch. With KEEP the sums would lag by hundreds of iterations. */
+    KEEP_PATIENT = 0.3,
+    /* |log gain| below which it counts as none, like a Laplace prior. View-dependent light alone causes values of 0.1. */
+    DOUBT = 0.03;
 static const float GAIN_MOST = 4;
-/* Logarithm by which a gain may exceed the range of the images' brightness: their contents differ, too. */
+/* Logarithm by which a gain may exceed the range of the images' brightness, because their contents differ, too. */
 static const double SLACK = 0.1;
-/* Value by which each channel of a pixel may differ from the background's. */
+/* Maximum difference of each channel from the background, for a pixel of the background. */
 static const float BACKDROP = 0.004f;
 
 adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *views, uint32_t n_views, int still,
@@ -78,7 +79,7 @@ void adcgs_exposure_follow(adcgs_exposure *e, uint32_t view, const adcgs_exposur
     }
 }
 
-/** By how much a camera's pictures exceed the mean camera's, as a factor. What may be the model's own fault is left out. */
+/** Factor by which a camera's images exceed those of the mean camera. A part that may be an error of the model is removed. */
 static float excess(const adcgs_exposure *e, uint32_t camera, size_t channel)
 {
     double mean = 0;
@@ -120,7 +121,7 @@ void adcgs_exposure_even(const adcgs_exposure *e, uint32_t view, const float *ta
     }
 }
 
-/** Whether a pixel of a target is the background that it was composited over. */
+/** True if a pixel of a target shows only the background. */
 static int is_backdrop(const float *target, size_t plane, const float backdrop[3])
 {
     int same = 1;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Brightness of cameras. Cameras filmed together seldom agree on it, by tens of percent in some sets, and a model told to match
- * them all puts haze before those that are dark. Nor do photographs of something that stands still, taken one by one. So each
- * camera that takes several pictures, and each picture of a still scene, has a gain per channel, which follows the least squares
- * fit of pictures drawn to pictures taken, and the model is trained on pictures divided by it, so that it shows the mean camera.
- * Black levels are known before, and taken off first.
- * Cameras that agree within 3 % are taken as they are. Gains are of training alone, no stream holds them. Known as gain
+ * Exposure of cameras. Cameras recorded together seldom agree in brightness; some data sets differ by tens of percent. Nor do
+ * photographs of a static scene, taken one by one. A model that must match them all puts haze in front of the darker ones. So
+ * each camera with several images, and each image of a static scene, has a gain per channel. It follows the least-squares fit of
+ * rendered to recorded images. The recorded images are divided by it, so that the model shows the mean camera. Black levels are
+ * known before and are subtracted first.
+ * Cameras that agree within 3 % are used unchanged. Gains belong to training and are not part of a stream. Known as gain
  * compensation (Brown and Lowe 2007, Automatic panoramic image stitching using invariant features, IJCV).
  */
 #ifndef ADCGS_TRAIN_EXPOSURE_H
@@ -13,51 +13,50 @@
 
 #include "data/scene.h"
 
-/** Of drawn * taken and of drawn^2, by channel. */
+/** Sums of drawn * taken and of drawn^2, per channel. */
 typedef struct adcgs_exposure_sums {
     double cross[3], square[3];
 } adcgs_exposure_sums;
 
 typedef struct adcgs_exposure_camera {
-    double cross[3], square[3]; /* such sums; recent pictures count more */
+    double cross[3], square[3]; /* decaying sums; recent images count more */
     float gain[3];              /* (taken - black) / drawn */
-    float black[3];             /* added to all it takes, relative to the middle camera; see black_level.h */
+    float black[3];             /* offset of the camera relative to the median camera; see black_level.h */
 } adcgs_exposure_camera;
 
 /** Zero-initialise before use. */
 typedef struct adcgs_exposure {
-    uint32_t n;                     /**< cameras; 0: brightness is taken as it is */
+    uint32_t n;                     /**< cameras; 0: brightness is used unchanged */
     uint32_t *of;                   /**< [views] camera of each view */
     adcgs_exposure_camera *cameras; /**< [n] */
-    int patient;                    /**< the mean says nothing until each has taken a picture: they are many */
-    float limit;                    /**< of a gain's logarithm, either way, about the mean: from the images alone */
+    int patient;                    /**< 1: many cameras; the mean is valid once each has had an image */
+    float limit;                    /**< bound of |log gain| about the mean, from the images alone */
 } adcgs_exposure;
 
 /**
- * Sort views by camera, equal in pose and lens. Where a camera has less than four pictures in the mean, n stays 0, unless the
- * scene is still: then a gain takes nothing from what changes over time.
+ * Groups views by camera, equal in pose and lens. If cameras have fewer than four images on average, n stays 0, except for a
+ * static scene, in which a gain cannot absorb changes over time.
  */
 adcgs_status adcgs_exposure_create(adcgs_exposure *exposure, const adcgs_scene_view *views, uint32_t n_views, int still,
                                    adcgs_error *error);
 void adcgs_exposure_clear(adcgs_exposure *exposure);
-/** The sums of a view's picture as drawn and as taken, [3][plane] both. */
+/** Computes the sums of a view's rendered and recorded images, both [3][plane]. */
 void adcgs_exposure_sum(const adcgs_exposure *exposure, uint32_t view, const float *drawn, const float *taken, size_t plane,
                         adcgs_exposure_sums *sums);
-/** Take note of such sums: the gain of the view's camera is another then. */
+/** Adds such sums, and updates the gain of the view's camera. */
 void adcgs_exposure_follow(adcgs_exposure *exposure, uint32_t view, const adcgs_exposure_sums *sums);
 /**
- * Bound gains by the images: no gain is further from the mean than the brightest or the darkest camera is from the median one.
+ * Bounds gains by the images: no gain is farther from the mean than the brightest or the darkest camera is from the median one.
  * brightness: [n] mean value of each camera's images; sorted here. Values that are not > 0 do not count.
  */
 void adcgs_exposure_bound(adcgs_exposure *exposure, double *brightness);
 /**
- * A burnt pixel is a lower bound: where more is rendered, the target follows the rendered value. drawn, target: as the mean
- * camera would have them, [3][plane]. background: that of images with alpha, which are not burnt where they have its colour;
- * else NULL.
+ * A burnt pixel is a lower bound: if the render is brighter, the target follows the render. drawn, target: as the mean camera
+ * would show them, [3][plane]. background: of images with alpha, whose pixels of this colour are not burnt; otherwise NULL.
  */
 void adcgs_exposure_allow_burnt(const adcgs_exposure *exposure, uint32_t view, const float *drawn, const float background[3],
                                 float *target, size_t plane);
-/** out: the picture taken, as the mean camera would have. All [3][plane]. */
+/** out: the recorded image as the mean camera would show it. All [3][plane]. */
 void adcgs_exposure_even(const adcgs_exposure *exposure, uint32_t view, const float *taken, float *out, size_t plane);
 
 #endif

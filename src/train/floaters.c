@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Primitives that float before the cameras. */
+/** \file Pruning of floaters in front of the cameras. */
 #include "train/floaters.h"
 
 #include "train/anchor_set.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Going on with the segment before. */
+/** \file Continuation of the previous segment. */
 #include "train/follow.h"
 
 #include "fmodel/from_model.h"
@@ -8,10 +8,10 @@
 
 #include <math.h>
 
-#define GONE 0.05f  /* presence below which an anchor has lived */
-#define STRAYS 4e-3 /* scene units that an anchor goes by its own velocity, below which its place is the same in both segments */
+#define GONE 0.05f  /* presence below which an anchor's lifetime has ended */
+#define STRAYS 4e-3 /* scene units of motion by the anchor's velocity, below which its position is the same in both segments */
 
-/** Whether a life is that of the whole segment, without a velocity: then it can be that of the next as well. */
+/** True if an anchor lives through the whole segment without velocity, so that the next segment can share it. */
 static int lives_whole(const adcgs_fmodel *f, uint32_t i)
 {
     double way = 0;
@@ -21,8 +21,8 @@ static int lives_whole(const adcgs_fmodel *f, uint32_t i)
 }
 
 /**
- * The same life in the time of the segment that begins: t of the one before is from + ratio t. u, of which presence and way are
- * functions, stays as it is.
+ * Converts a lifetime to the time of the new segment: t of the previous segment is from + ratio t. Presence and motion are
+ * functions of u, which is unchanged.
  */
 static void shift_life(adcgs_fmodel *f, uint32_t i, double from, double ratio)
 {
@@ -41,7 +41,9 @@ static void go_on_living(adcgs_fmodel *f, double from, double ratio)
             shift_life(f, i, from, ratio);
 }
 
-/** Time begins at a moment, t, of what it was; with the second row bodies go on as they went. */
+/**
+ * Starts the time table at time `from` of the previous one. In pose columns, row 1 and later rows continue the motion by one row.
+ */
 static void start_time_table(adcgs_fmodel *f, double from)
 {
     const size_t width = f->params.time_width, columns = (size_t)adcgs_fmodel_time_columns(&f->params);
@@ -59,7 +61,7 @@ static void start_time_table(adcgs_fmodel *f, double from)
     }
 }
 
-/** Leave out who does not live any more; one stays, whatever it is. */
+/** Removes anchors whose lifetime has ended; at least one stays. */
 static adcgs_status drop_dead(adcgs_fmodel *f, adcgs_error *error)
 {
     uint32_t(*pos)[3] = adcgs_alloc(NULL, f->n, sizeof *pos, error);

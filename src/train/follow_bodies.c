@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Bodies found again. */
+/** \file Matching of bodies with those of the previous segment. */
 #include "train/follow_bodies.h"
 
 #include "camera/rotation.h"
@@ -7,12 +7,12 @@
 
 #include <math.h>
 
-#define NEAR 0.03 /* scene units, at least, within which a body that was found is one of the model's */
+#define NEAR 0.03 /* scene units: minimum radius within which a found body matches one of the model */
 
-/** A body of the model as the segment begins: its rotation, the centre about which it turns, at rest and now, its size. */
+/** State of a model's body at the start of the segment: rotation, centre of rotation at rest and now, size. */
 typedef struct stand {
     double q[4], centre[3], to[3], half;
-    int anchors, found; /* found: number of the body that it is, from 1; 0: none */
+    int anchors, found; /* found: index of its found body, from 1; 0: none */
 } stand;
 
 static void measure(const adcgs_fmodel *f, int body, stand *s)
@@ -23,7 +23,7 @@ static void measure(const adcgs_fmodel *f, int body, stand *s)
         s->half = fmax(s->half, 0.5 * (double)(high[a] - low[a] + 1) * (double)f->voxel);
 }
 
-/** How all bodies stand at the beginning of the model's time table. */
+/** States of all bodies at the start of the model's time table. */
 static void take_stands(const adcgs_fmodel *f, stand stands[ADCGS_BODIES_MAX])
 {
     adcgs_body_place place[ADCGS_BODIES_MAX];
@@ -41,7 +41,7 @@ static void take_stands(const adcgs_fmodel *f, stand stands[ADCGS_BODIES_MAX])
     }
 }
 
-/** Where a body that was found is at its first moment: the middle of its points, 0 if it has none then. */
+/** Mean position of a found body's points in its first frame. Returns 0 if it has none there. */
 static int place_of(const adcgs_stereo *found, uint32_t body, double x[3])
 {
     int n = 0;
@@ -56,7 +56,7 @@ static int place_of(const adcgs_stereo *found, uint32_t body, double x[3])
     return n;
 }
 
-/** The model's body that is nearest to a place, within its size; -1 if there is none. */
+/** The nearest body of the model whose extent contains a position; -1 if there is none. */
 static int body_at(const adcgs_fmodel *f, const stand *stands, const double x[3])
 {
     double least = INFINITY;
@@ -90,7 +90,10 @@ static void turn(const double q[4], int back, const double x[3], double out[3])
         out[i] = r[row * i] * x[0] + r[row * i + column] * x[1] + r[row * i + 2 * column] * x[2];
 }
 
-/** Poses from where the model's anchors rest: to where the body was left, from there back to where it was found, and on. */
+/**
+ * Composes poses for the model's rest positions: to the state at the end of the previous segment, back to the found body's rest
+ * pose, and on to the frame.
+ */
 static void go_on_from(adcgs_stereo_body *body, uint32_t moments, const stand *s)
 {
     const adcgs_stereo_pose first = body->pose[0];
@@ -98,7 +101,7 @@ static void go_on_from(adcgs_stereo_body *body, uint32_t moments, const stand *s
     double away[3], rest[3], since[4];
     for (int a = 0; a < 3; a++)
         away[a] = s->to[a] - body->pivot[a] - first.way[a];
-    turn(first.q, 1, away, rest); /* of the centre, from the pivot, where the body is at rest */
+    turn(first.q, 1, away, rest); /* offset of the centre from the pivot, in the body's rest pose */
     adcgs_rotation_multiply(back, s->q, since);
     for (uint32_t m = 0; m < moments; m++) {
         adcgs_stereo_pose *p = &body->pose[m];
@@ -112,10 +115,10 @@ static void go_on_from(adcgs_stereo_body *body, uint32_t moments, const stand *s
     memcpy(body->pivot, s->centre, sizeof body->pivot);
 }
 
-/** Numbers of the model's bodies for those that were found, 0 for none; their poses become what the model needs. */
+/** Assigns the model's body numbers to found bodies, 0 for none, and converts their poses. */
 static void name_bodies(const adcgs_fmodel *f, adcgs_stereo *found, stand *stands, uint8_t number[ADCGS_BODIES_MAX])
 {
-    for (int fresh = 0; fresh < 2; fresh++) /* first those that go on */
+    for (int fresh = 0; fresh < 2; fresh++) /* first the bodies that continue */
         for (uint32_t i = 0; i < found->n_bodies; i++) {
             double x[3];
             if (number[i] || (!fresh && !place_of(found, i, x)))

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The moment when the anchors' values become what the stream holds. */
+/** \file Freezing of the anchors' values. */
 #include "train/freeze.h"
 
 #include "train/curvature.h"
 #include "train/levels.h"
 
-#define HELD 1e20f /* loss per square of a value: more than any bits are worth */
+#define HELD 1e20f /* loss per squared change of a value: more than any bits are worth */
 
-/** Levels of what is settled are no matter of choice. */
+/** Fixes the levels of frozen anchors, which must not change. */
 static void hold_settled(const adcgs_fmodel *f, float *const curvature[ADCGS_P_ANCHOR])
 {
     for (int i = 0; f->follows && i < ADCGS_P_ANCHOR; i++) {

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The moment when the anchors' values become what the stream holds. */
+/** \file Freezing of the anchors' values to those that the stream will hold. */
 #ifndef ADCGS_TRAIN_FREEZE_H
 #define ADCGS_TRAIN_FREEZE_H
 
 #include "train/state.h"
 
 /**
- * Fix the anchors' values as the stream will hold them, by rate and distortion with the configured strength; from here on only
- * networks are trained. What the choice was made from stays in the trainer and its checkpoints, in place of the anchors' Adam
- * moments, which are spent: the values wanted in param[].m, the loss's curvature in param[].v. Without a strength, and without a
- * target to land on, nothing is chosen by it, and the drawing that it takes is spared: param[].v is then 0.
+ * Fixes the anchors' values as the stream will hold them, by rate and distortion with the configured strength. From here on only
+ * networks are trained. The input of the choice replaces the anchors' Adam moments, which are no longer needed, in the trainer
+ * and its checkpoints. param[].m: the unquantised values; param[].v: the curvature of the loss. Without a strength and without a
+ * target, the curvature is not needed; its renders are skipped, and param[].v is 0.
  */
 adcgs_status adcgs_freeze(adcgs_trainer *trainer, adcgs_error *error);
 

@@ -10,9 +10,9 @@
 
 #include <math.h>
 
-static const double ALONE = 0.1; /* the size of the only anchor */
+static const double ALONE = 0.1; /* scene units: size of a single anchor */
 
-/** A cube around the points, at least the unit ball's half, at most +-8. */
+/** Half edge of a cube around the points: at least 0.5, at most 8 scene units. */
 static double cube_half(const adcgs_start_points *c)
 {
     double half = 0.5;
@@ -30,7 +30,7 @@ void adcgs_set_span(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p)
         *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_VELOCITY + a) = p->body ? 0 : 8 * p->velocity[a] * p->life;
 }
 
-/** spacing: mean distance to the nearest others, in voxels; 0 where there are none. */
+/** spacing: mean distance to the nearest anchors, in voxels; 0 if there are none. */
 static void set_anchor(adcgs_fmodel *f, uint32_t i, const double rgb[3], double spacing)
 {
     const double d = fmin(fmax(f->n > 1 ? spacing * (double)f->voxel : ALONE, 2 * (double)f->voxel), 1.0);
@@ -41,7 +41,7 @@ static void set_anchor(adcgs_fmodel *f, uint32_t i, const double rgb[3], double 
     }
 }
 
-/** One anchor per occupied voxel, Morton order; order[i] is the point anchor i came from, of *anchors. */
+/** Makes one anchor per occupied voxel, in Morton order. order[i]: the source point of anchor i. *anchors: their number. */
 static adcgs_status voxelise(const adcgs_start_points *c, double half, int depth, uint32_t (*pos)[3], uint32_t *order,
                              uint32_t *anchors, adcgs_error *error)
 {
@@ -66,8 +66,8 @@ static adcgs_status voxelise(const adcgs_start_points *c, double half, int depth
 }
 
 /**
- * What matching says of time: who is still will not move; who is part of a body lives as long as it does; of the others that
- * move, neighbours live at other moments.
+ * Sets the lifetime from matching. Static points do not move. Points of a body live as long as the body. For other moving points,
+ * neighbours live at other times.
  */
 static void set_life(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p, float half)
 {

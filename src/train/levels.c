@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The choice of levels. */
+/** \file Rate-distortion optimised quantisation. */
 #include "train/levels.h"
 
 adcgs_status adcgs_level_prices(const adcgs_trainer *t, double strength, adcgs_rdo *rdo, adcgs_error *error)
 {
     if (!t->frozen)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "values are decided by rate and distortion only once they are frozen");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "levels are chosen by rate and distortion only after values are frozen");
     *rdo = (adcgs_rdo){ .lambda_bit = t->config.without_rate ? 0 : strength * adcgs_price_of_bit(t) };
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
         rdo->target[i] = t->f->param[i].m;
-        /* No picture shows eta: it is there for the sake of f_v's bits, and has no price of its own. */
+        /* No image depends on eta. It only serves to code f_v and has no distortion of its own. */
         rdo->curvature[i] = i == ADCGS_P_ETA ? NULL : t->f->param[i].v;
     }
     return ADCGS_OK;

@@ -1,24 +1,23 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The choice of levels of a frozen run by rate and distortion: each value's level is the one whose bits and whose loss, by the
- * curvature there, cost the least together. Known as rate-distortion optimised quantisation (RDOQ) in video coding.
+ * Rate-distortion optimised quantisation of a frozen run. Each value gets the level whose bits and whose loss, by the curvature,
+ * have the least total cost. Known as RDOQ in video coding.
  */
 #ifndef ADCGS_TRAIN_LEVELS_H
 #define ADCGS_TRAIN_LEVELS_H
 
 #include "train/state.h"
 
-/** The prices of a frozen trainer at a strength: lambda_bit is the run's loss per bit times strength. ADCGS_ERR_USAGE before. */
+/** Parameters for a frozen trainer: lambda_bit is strength times the run's loss per bit. ADCGS_ERR_USAGE if it is not frozen. */
 adcgs_status adcgs_level_prices(const adcgs_trainer *trainer, double strength, adcgs_rdo *rdo, adcgs_error *error);
 
 /**
- * Decide the values of a frozen trainer anew, from the same wishes, with another strength (0: the nearest levels). What
- * adcgs_encode_stream() writes after it has the bytes that adcgs_encode_bytes() gave for that strength, as long as no training
- * comes between.
+ * Quantises the values of a frozen trainer again from the same unquantised values, with another strength (0: nearest levels).
+ * Without further training, adcgs_encode_stream() then writes as many bytes as adcgs_encode_bytes() gave for this strength.
  */
 adcgs_status adcgs_level_choose(adcgs_trainer *trainer, double strength, adcgs_error *error);
 
-/** Give each group of channels the density that codes its rounded values in the fewest bits, and take note of these. */
+/** Sets each channel group's density to the one that codes its rounded values in the fewest bits, and stores these bits. */
 void adcgs_level_densities(adcgs_trainer *trainer);
 
 #endif

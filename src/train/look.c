@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file One look at a view. */
+/** \file One view pass. */
 #include "train/look.h"
 
 #include "grad/random.h"
 #include "train/tiers.h"
 #include "train/views.h"
 
-/* Before, the pictures drawn say nothing of brightness. */
+/* Of the run: earlier renders are too inaccurate for gains. */
 static const double EXPOSURE_FROM = 0.02;
-/* Looks for a picture to be read in the meantime. */
+/* View passes ahead for which images are prefetched. */
 enum { PICTURES_AHEAD = 8 };
 
 int adcgs_look_is_rated(const adcgs_trainer *t, double progress)
@@ -69,7 +69,7 @@ static void add_stats(const adcgs_trainer *t, const adcgs_view *v, const adcgs_r
     stats->n++;
 }
 
-/** Draw the view, and find the gradients of its picture's loss by the primitives. */
+/** Renders the view, and computes the gradients of its image loss with respect to the primitives. */
 static adcgs_status look_at_picture(adcgs_trainer *t, double progress, uint32_t number, const adcgs_raster_grads *grads,
                                     adcgs_seen *seen, adcgs_error *error)
 {
@@ -87,7 +87,7 @@ static adcgs_status look_at_picture(adcgs_trainer *t, double progress, uint32_t 
     return adcgs_view_draw_back(t, v, picked, &all, error);
 }
 
-/** Prices of primitives and of their motion, beside the picture. */
+/** Adds the penalties of primitives and of their motion. */
 static adcgs_status add_prices(adcgs_trainer *t, double progress, uint32_t number, const adcgs_view *v, adcgs_deform deform,
                                adcgs_raster_grads *grads, adcgs_error *error)
 {
@@ -113,10 +113,10 @@ adcgs_status adcgs_look(adcgs_trainer *t, double progress, uint32_t number, adcg
     const adcgs_train_view *v = &t->views[picked];
     const adcgs_pass_mode mode = mode_of(t, progress, number);
     const int rated = adcgs_look_is_rated(t, progress);
-    /* A pass that rounds renews the means of what it measures: all looks of an iteration those of the same groups. */
+    /* A rounding pass updates the means of the groups that it measures, so all passes of an iteration use the same groups. */
     const uint32_t turn = mode.quant == ADCGS_QUANT_ROUND ? t->iteration : number;
     adcgs_raster_grads grads = t->pass->grads;
-    if (progress >= c->densify_until) /* only growth asks for it */
+    if (progress >= c->densify_until) /* only growth needs it */
         grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(look_at_picture(t, progress, number, &grads, seen, error));

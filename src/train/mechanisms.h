@@ -20,10 +20,10 @@ typedef enum adcgs_mechanism {
 
 /** As in "without NAME". */
 extern const char *const adcgs_mechanism_names[ADCGS_MECHANISMS];
-/** The setting of each that is 0 where it is off. */
+/** The setting of each mechanism; 0 turns it off. */
 extern const char *const adcgs_mechanism_settings[ADCGS_MECHANISMS];
 
-/** Whether a mechanism was dropped, by the text of adcgs_trials_tell() (" dropped=NAME,NAME"). */
+/** True if a mechanism was dropped, by the text of adcgs_trials_tell() (" dropped=NAME,NAME"). */
 int adcgs_mechanism_is_dropped(int mechanism, const char *trials);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What is missing at moments. */
+/** \file Densification in time. */
 #include "train/moment_densify.h"
 
 #include "grad/random.h"
@@ -9,9 +9,9 @@
 #include <math.h>
 
 enum { MOMENTS = 2, VIEWS_MOST = 8, VIEWS_LEAST = 2 };
-#define GAIN_LEAST 0.04f /* mean over views and channels, by which a point's colour is nearer to the picture than what is drawn */
+#define GAIN_LEAST 0.04f /* minimum gain: reduction of the absolute error, mean over views and channels */
 
-/** The points of a moment. */
+/** The points of a frame. */
 typedef struct batch {
     const adcgs_stereo_point *point;
     uint32_t n;
@@ -29,7 +29,7 @@ static batch batch_of(const adcgs_stereo *s, float moment)
     return b;
 }
 
-/** What a view says of points: how much nearer each is to what was taken than what is drawn is. */
+/** Adds a view's gain for each point: error of the render minus error of the point's colour. */
 static adcgs_status ask_view(adcgs_trainer *t, batch *b, uint32_t index, adcgs_error *error)
 {
     const adcgs_view *v = &t->views[index].view;

@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Growth in time: where the pictures of a moment show what the model does not, points that matching found there and then become
- * anchors that live about that moment (spans of life with a velocity: Wang et al. 2025, FreeTimeGS, CVPR).
+ * Densification in time. Where the images of a frame show content that the model lacks, matched points of the frame become
+ * anchors with a lifetime around it (lifetimes with a velocity: Wang et al. 2025, FreeTimeGS, CVPR).
  */
 #ifndef ADCGS_TRAIN_MOMENT_DENSIFY_H
 #define ADCGS_TRAIN_MOMENT_DENSIFY_H
 
 #include "train/state.h"
 
-/** Of the points of a few moments, other ones each time, those that the views miss the most, at most `most`; *n of them. */
+/**
+ * Finds the points with the largest gain in the views of a few frames, which differ between calls. *n: their number, at most
+ * `most`.
+ */
 adcgs_status adcgs_moment_find(adcgs_trainer *trainer, const adcgs_stereo_point **points, uint32_t most, uint32_t *n,
                                adcgs_error *error);
 

@@ -5,7 +5,7 @@
 
 #include "train/state.h"
 
-/** Keep so many anchors (at least one): those that covered the most pixels since the anchors last changed. */
+/** Keeps the `keep` anchors (at least one) that covered the most pixels since the last change of the anchors. */
 adcgs_status adcgs_prune_anchors(adcgs_trainer *trainer, uint32_t keep, adcgs_error *error);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Steering lambda to a size or to a quality. */
+/** \file Control of lambda towards a size or a quality. */
 #include "train/rate_control.h"
 
 #include "metric/metric.h"
@@ -10,33 +10,29 @@
 
 #include <math.h>
 
-/** STEP_EVERY, in iterations; lambda stays within so many times of where it began, both ways. */
-enum { STEP_EVERY = 10, SAMPLE_VIEWS = 24, LAMBDA_REACH = 100 };
-#define MEASURE_EVERY 0.03 /* of the run */
-/**
- * Bytes to aim at while values are only rounded: the choice of levels takes the rest, at less loss than lambda would.
- * PSNR to aim at: so that there is something to choose from.
+enum {
+    STEP_EVERY = 10,    /* iterations between updates of lambda */
+    SAMPLE_VIEWS = 24,  /* training views of a PSNR measurement */
+    LAMBDA_REACH = 100  /* maximum factor between lambda and its initial value, in both directions */
+};
+#define MEASURE_EVERY 0.03     /* fraction of the run between measurements */
+#define SIZE_LEAD 1.03         /* size aimed at before the freeze / target size; RDOQ saves the rest at less loss than lambda */
+#define PSNR_LEAD 0.1          /* dB above the target, so that RDOQ has a margin */
+#define LATTICES_LEAVE 0.8     /* share of the networks' bytes that remains when lattices are final */
+#define UNITS_LEAVE 0.4        /* share that remains after the first pruning of hidden units */
+#define UNITS_LEAVE_AGAIN 0.75 /* share that remains after the second one */
+#define PRUNE_FROM 0.05        /* log of bytes over room: minimum for pruning anchors */
+#define PRUNE_LEAST 0.8        /* minimum share of the anchors that one pruning keeps */
+enum { PRUNE_AFTER = 50 };     /* minimum iterations of statistics before pruning */
+/*
+ * Gains of the controller. Bytes vary with about the -0.3rd power of lambda, and need a tenth of the run to follow it.
  */
-#define SIZE_LEAD 1.03
-#define PSNR_LEAD 0.1
-/** What is left of the networks' bytes when lattices are final, and when hidden units have gone, the first time and again. */
-#define LATTICES_LEAVE 0.8
-#define UNITS_LEAVE 0.4
-#define UNITS_LEAVE_AGAIN 0.75
-/** Error that anchors are pruned for, and the least share of them that stays; iterations to know them by. */
-#define PRUNE_FROM 0.05
-#define PRUNE_LEAST 0.8
-enum { PRUNE_AFTER = 50 };
-/**
- * Gains of the feedback, on the error's change, which at first is all of it, and on the error itself over the whole run. Bytes go
- * with about the -0.3rd power of lambda, and take a tenth of the run to get there.
- */
-#define GAIN_CHANGE 3.0
-#define GAIN_ERROR 30.0
-#define GAIN_PSNR 0.3 /* of a dB as an error */
-#define PSNR_AHEAD 5.0 /* dB that views of full size would gain in a whole run */
+#define GAIN_CHANGE 3.0 /* on the change of the error, initially the whole error */
+#define GAIN_ERROR 30.0 /* on the error integrated over the run */
+#define GAIN_PSNR 0.3   /* error per dB */
+#define PSNR_AHEAD 5.0  /* expected dB that views at full size gain in a whole run */
 
-/** Bytes of features, as estimated lately. */
+/** Estimated bytes of the features in recent iterations. */
 static double estimate(const adcgs_trainer *t)
 {
     double bits = 0;
@@ -45,7 +41,7 @@ static double estimate(const adcgs_trainer *t)
     return bits / 8;
 }
 
-/** Share of the networks' bytes that will be left in the end. */
+/** Share of the networks' bytes that will remain at the end. */
 static double networks_left(const adcgs_trainer *t)
 {
     const adcgs_train_config *c = &t->config;
@@ -68,7 +64,7 @@ static adcgs_status measure_size(adcgs_trainer *t, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** Anchors there will be over anchors there are: growth goes on where it has kept up with its budget so far. */
+/** Expected growth of the number of anchors. Growth is expected to continue if it has followed its budget so far. */
 static double growth_ahead(const adcgs_trainer *t, double progress)
 {
     const double budget = adcgs_densify_budget(&t->config, progress);
@@ -76,7 +72,7 @@ static double growth_ahead(const adcgs_trainer *t, double progress)
     return progress < t->config.densify_until && t->f->n > 0.9 * budget ? fmax(1, whole / t->f->n) : 1;
 }
 
-/** Log of the bytes that features take over those they may take. */
+/** Logarithm of the features' bytes over the bytes available for them. */
 static double size_error(const adcgs_trainer *t, double progress)
 {
     const double aim = SIZE_LEAD * t->config.target_value, room = fmax(aim - t->rate_control.fixed, 0.05 * aim);
@@ -88,7 +84,7 @@ double adcgs_rate_bounded(const adcgs_trainer *t, double lambda)
     return fmin(fmax(lambda, (double)t->config.lambda / LAMBDA_REACH), (double)t->config.lambda * LAMBDA_REACH);
 }
 
-/** What a run will end with, about: while views are drawn smaller than they are, what they have there. */
+/** Predicts the final PSNR. While views are rendered at reduced size, it is the PSNR there. */
 static adcgs_status foresee_psnr(adcgs_trainer *t, double progress, double *psnr, adcgs_error *error)
 {
     if (t->divide > t->config.scale) {
@@ -125,7 +121,7 @@ adcgs_status adcgs_rate_measure(adcgs_trainer *t, double progress, double *off, 
     return ADCGS_OK;
 }
 
-/** Where lambda is as large as it may be and still too small, the anchors that show least go, some at a time. */
+/** If lambda is at its upper bound and still too small, prunes a part of the least visible anchors. */
 static adcgs_status prune(adcgs_trainer *t, adcgs_error *error)
 {
     const adcgs_rate_control *s = &t->rate_control;
@@ -133,7 +129,7 @@ static adcgs_status prune(adcgs_trainer *t, adcgs_error *error)
         return ADCGS_OK;
     const double before = t->f->n;
     ADCGS_TRY(adcgs_prune_anchors(t, (uint32_t)(before * fmax(exp(-0.5 * s->error), PRUNE_LEAST)), error));
-    for (int i = 0; i < ADCGS_GROUPS; i++) /* a running mean, which would lag behind */
+    for (int i = 0; i < ADCGS_GROUPS; i++) /* a running mean would lag behind */
         t->mean_bits[i] *= t->f->n / before;
     return ADCGS_OK;
 }
@@ -142,7 +138,7 @@ adcgs_status adcgs_rate_control_step(adcgs_trainer *t, double progress, adcgs_er
 {
     const adcgs_train_config *c = &t->config;
     adcgs_rate_control *s = &t->rate_control;
-    const int waits = c->target == ADCGS_TARGET_PSNR && s->tries && !t->rounding; /* full size is seen, but not learnt yet */
+    const int waits = c->target == ADCGS_TARGET_PSNR && s->tries && !t->rounding; /* full size is rendered but not trained yet */
     if (c->target == ADCGS_TARGET_NONE || progress < c->rate_from || t->frozen || waits || t->iteration % STEP_EVERY ||
         !(estimate(t) > 0))
         return ADCGS_OK;

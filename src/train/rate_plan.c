@@ -1,20 +1,22 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What fits into a size. */
+/** \file Anchors and networks that fit into a size. */
 #include "train/rate_plan.h"
 
 #include <math.h>
 
-/**
- * Bytes of headers, cameras and notes, at most about; bits of an anchor at a small lambda, by which a large size has room for
- * more than a preset, and at a large one, by which a small size has room for less; a plausible share of networks.
- */
-enum { OTHER_BYTES = 1700, ANCHOR_BITS = 220, FEWEST_BITS = 50, ANCHORS_LEAST = 16, WIDTH_LEAST = 8 };
-#define NETWORKS_SHARE 0.25
-#define UNITS_STAY 0.3 /* share of the weights that is left when hidden units have gone that do not pay */
-#define LAMBDA_FIRST 0.1f /* from where a target seeks it */
-#define ANCHORS_GROWTH 4 /* a large size may raise a preset's budget so many times */
+enum {
+    OTHER_BYTES = 1700,  /* upper estimate for headers, cameras and metadata */
+    ANCHOR_BITS = 220,   /* per anchor at a small lambda; a large size allows more anchors than a preset by it */
+    FEWEST_BITS = 50,    /* per anchor at a large lambda; a small size allows fewer anchors than a preset by it */
+    ANCHORS_LEAST = 16,
+    WIDTH_LEAST = 8
+};
+#define NETWORKS_SHARE 0.25 /* plausible share of the networks in a size */
+#define UNITS_STAY 0.3      /* share of the weights that remain after pruning of hidden units */
+#define LAMBDA_FIRST 0.1f   /* initial lambda of a search */
+#define ANCHORS_GROWTH 4    /* maximum factor by which a large size raises a preset's budget */
 
-/** Weights of all networks under a configuration. */
+/** Number of weights of all networks under a configuration. */
 static adcgs_status count_weights(const adcgs_train_config *c, size_t *weights, adcgs_error *error)
 {
     static const float origin[3];
@@ -22,7 +24,7 @@ static adcgs_status count_weights(const adcgs_train_config *c, size_t *weights, 
     adcgs_params params = c->params;
     adcgs_fmodel *f;
     *weights = 0;
-    params.bodies = 0; /* they are not found yet, and the fewest scenes have as many as there may be */
+    params.bodies = 0; /* not known yet, and few scenes have the maximum number */
     ADCGS_TRY(adcgs_fmodel_create(&f, &params, &c->shape, origin, 1, place, 1, 0, error));
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         *weights += f->mlp[i].n;
@@ -36,7 +38,7 @@ static int narrower(int width, double factor)
     return width ? ADCGS_MIN(width, ADCGS_MAX(scaled, WIDTH_LEAST)) : 0; /* 0: the network is left out */
 }
 
-/** The widest networks, of some fractions of the preset's width, that leave room for anchors. */
+/** Chooses the widest networks, from fractions of the preset's width, that leave room for anchors. */
 static adcgs_status plan_networks(adcgs_train_config *c, double *bytes, adcgs_error *error)
 {
     const double share = NETWORKS_SHARE * c->target_value;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The lambda of a size or a quality. */
+/** \file Search for the lambda of a size or a quality. */
 #include "train/rate_search.h"
 
 #include "train/checkpoint.h"
@@ -7,23 +7,17 @@
 
 #include <math.h>
 
-/**
- * Of the run, from when it is decided what stays until its bytes are looked at, twice. How they fall meanwhile, more where lambda
- * is large, tells how they will: by so many times as much again.
- */
-#define LOOK_AFTER 0.06
-#define VERDICT_AFTER 0.1
+#define LOOK_AFTER 0.06    /* fraction of the run from decide_at to the first measurement of bytes */
+#define VERDICT_AFTER 0.1  /* fraction of the run from decide_at to the second measurement */
+/** Predicted further change of the bytes, relative to the change between the measurements, which grows with lambda. */
 #define FALL_AHEAD 1.0
-/** Logarithms of bytes over room that lambda can be steered from, and of what one try's lambda may be of the last one's. */
-#define NEAR 0.08
-#define LEAP 4.0
-/** Bytes go with this power of lambda, about; what two tries say is believed between the others. */
-#define POWER 0.3
-#define POWER_LEAST 0.1
-#define POWER_MOST 0.6
-/** dB that views have less where lambda is e times as large, about, and that are added to what was missing in the end. */
-#define MISSED_POWER 1.0
-#define MISSED_DOUBT 0.1
+#define NEAR 0.08          /* |log of bytes over room| up to which the controller can take over */
+#define LEAP 4.0           /* maximum |log of the factor| from one try's lambda to the next */
+#define POWER 0.3          /* bytes vary with about this power of lambda; later tries use the power of the last two */
+#define POWER_LEAST 0.1    /* minimum of the power from two tries */
+#define POWER_MOST 0.6     /* maximum of the power from two tries */
+#define MISSED_POWER 1.0   /* approximate dB lost when lambda grows by a factor of e */
+#define MISSED_DOUBT 0.1   /* dB added to a shortfall at the end */
 enum { TRIES = 4 };
 
 static double verdict_at(const adcgs_train_config *c)
@@ -38,7 +32,7 @@ int adcgs_rate_is_sought(const adcgs_trainer *t)
            verdict_at(c) > (double)c->rate_from && verdict_at(c) < fmin((double)c->round_from, 1);
 }
 
-/** By the power that the last two tries tell. */
+/** Next lambda, by the power that the last two tries show. */
 static double next_lambda(const adcgs_trainer *t, double off)
 {
     const adcgs_rate_control *s = &t->rate_control;
@@ -61,13 +55,13 @@ static adcgs_status keep_beginning(adcgs_trainer *t, adcgs_error *error)
     return status;
 }
 
-/** All is as it was where rate began, but for lambda and the time. */
+/** Restores the state at the start of rate, except lambda and the elapsed time. */
 static adcgs_status begin_again(adcgs_trainer *t, double lambda, adcgs_error *error)
 {
     const adcgs_rate_control tried = t->rate_control;
     const adcgs_time elapsed = t->elapsed;
     adcgs_buffer begin = t->begin;
-    adcgs_buffer_init(&t->begin); /* what is restored has none */
+    adcgs_buffer_init(&t->begin); /* the restored state contains none */
     const adcgs_status status = adcgs_trainer_restore(t, begin.data, begin.size, error);
     adcgs_buffer_clear(&t->begin);
     t->begin = begin;
@@ -95,7 +89,7 @@ adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_err
         return ADCGS_OK;
     }
     s->looked = 0;
-    s->error = off; /* steering begins where this ends; for a quality, much later, when values are rounded */
+    s->error = off; /* control starts here; for a quality, much later, when values are rounded */
     s->at = is_size ? progress : 0;
     off += is_size ? FALL_AHEAD * (off - s->early) : 0;
     const double lambda = next_lambda(t, off), tried = t->lambda;

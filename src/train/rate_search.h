@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The lambda of a size or a quality. What it throws away early does not come back, and what it keeps early hardly goes: from
- * where rate counts until it is decided what stays, a run with a target has one lambda. By then its bytes are known within a few
- * percent of what they will be, its PSNR within some tenths; where they do not suit, it goes back to where rate began, with a
- * lambda that suits better. From there on lambda is steered (rate_control.h).
+ * Search for the lambda of a size or a quality. Content discarded early does not come back, and content kept early hardly goes.
+ * So a run with a target has one lambda from rate_from until after decide_at. By then its final bytes are known within a few
+ * percent, and its PSNR within some tenths. If they do not fit, the run returns to rate_from with a better lambda. After the
+ * search, lambda is controlled (rate_control.h).
  */
 #ifndef ADCGS_TRAIN_RATE_SEARCH_H
 #define ADCGS_TRAIN_RATE_SEARCH_H
 
 #include "train/state.h"
 
-/** Whether it is still sought. A run that counts time cannot go back. */
+/** True if the search is not finished. A run with a time limit cannot return. */
 int adcgs_rate_is_sought(const adcgs_trainer *trainer);
-/** Called before each iteration in which that is so. Going back, t->iteration is less than it was: progress is another then. */
+/** Called before each iteration during the search. If the run returns, t->iteration decreases and so progress changes. */
 adcgs_status adcgs_rate_search_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
 
 /**
- * Called when values have been frozen, which have so many dB less than they should, less than 0 if more. Once, if they have less,
- * a run that lambda was sought of goes back as above.
+ * Called after values are frozen. missing: dB below the target, negative if above. On the first shortfall, a run with a search
+ * returns as above.
  */
 adcgs_status adcgs_rate_search_end(adcgs_trainer *trainer, double missing, adcgs_error *error);
 

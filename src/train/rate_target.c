@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Landing on a target: the strength of the choice of levels at which a frozen run meets it. */
+/** \file Meeting a target: the strength of RDOQ at which a frozen run meets it. */
 #include "train/rate_target.h"
 
 #include "train/levels.h"
@@ -10,32 +10,31 @@
 
 #include <math.h>
 
-/** REACH: between strengths tried while only one side is known. */
-enum { TRIES = 16, PRUNINGS = 16, REACH = 8 };
+enum {
+    TRIES = 16,
+    PRUNINGS = 16,
+    REACH = 8 /* factor between tried strengths while only one bound is known */
+};
 #define STRENGTH_FIRST 1.0
-/** Beyond the first a choice throws away far more than it saves, and fewer anchors are the better way to a size. */
-#define STRENGTH_MOST_SIZE 64.0
+#define STRENGTH_MOST_SIZE 64.0 /* beyond it, RDOQ discards far more than it saves, and pruning anchors is better */
 #define STRENGTH_MOST_PSNR 1e6
-/** Shares of the anchors that one pruning leaves. */
-#define PRUNE_LEAST 0.5
-#define PRUNE_MOST 0.98
-/** Of the size, left free when values freeze: networks are still trained, and may become larger. */
-#define SIZE_MARGIN 0.01
-/** dB that networks gain after the freeze, about, and dB that are near enough. */
-#define PSNR_GAIN 0.1
-#define PSNR_NEAR 0.03
-
-/** Logarithms of what steps are made finer by, and tries at it. */
-#define STEPS_REACH 1.4
-#define STEPS_FIRST 0.2
+#define PRUNE_LEAST 0.5         /* minimum share of the anchors that one pruning keeps */
+#define PRUNE_MOST 0.98         /* maximum share of the anchors that one pruning keeps */
+#define SIZE_MARGIN 0.01        /* share of the size left free at the freeze; networks are still trained and may grow */
+#define PSNR_GAIN 0.1           /* dB: approximate gain of the networks after the freeze */
+#define PSNR_NEAR 0.03          /* dB: tolerance of the target */
+#define STEPS_REACH 1.4         /* maximum |log of the factor| by which steps become finer */
+#define STEPS_FIRST 0.2         /* the first one tried */
 enum { STEPS_TRIES = 8 };
 
-/** What is accepted: values in [low, high]; a stronger choice gives lower values, of bytes as of dB. */
+/** The accepted range of values [low, high]. A higher strength gives lower values, of bytes and of dB. */
 typedef struct window {
     double low, high;
 } window;
 
-/** Choose levels with a strength, and the densities that suit them; from the nearest levels on, whatever was chosen before. */
+/**
+ * Quantises with a strength and sets the matching densities. Starts from the nearest levels, so earlier choices have no effect.
+ */
 static adcgs_status settle(adcgs_trainer *t, double strength, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_level_choose(t, 0, error));
@@ -47,7 +46,7 @@ static adcgs_status settle(adcgs_trainer *t, double strength, adcgs_error *error
     return ADCGS_OK;
 }
 
-/** The bytes, or the PSNR, of the run as it stands. */
+/** The current bytes or PSNR of the run. */
 static adcgs_status value_now(adcgs_trainer *t, double *value, adcgs_error *error)
 {
     adcgs_bytes bytes;
@@ -65,13 +64,13 @@ static adcgs_status try_strength(adcgs_trainer *t, double strength, double *valu
 }
 
 /**
- * The strength whose value lies in the window, or as close below it as some tries come; *value: what it gives. Still above
- * the window if nothing brings it down that far.
+ * Finds the strength whose value lies in the window, or as close below it as the tries allow. *value: its value, which is above
+ * the window if no strength reaches it.
  */
 static adcgs_status seek(adcgs_trainer *t, const window *w, double *strength, double *value, adcgs_error *error)
 {
     const double most = t->config.target == ADCGS_TARGET_SIZE ? STRENGTH_MOST_SIZE : STRENGTH_MOST_PSNR;
-    double weak = 0, strong = 0, next = STRENGTH_FIRST, v; /* weak: gives too much; strong: the weakest known that does not */
+    double weak = 0, strong = 0, next = STRENGTH_FIRST, v; /* weak: value too high; strong: the weakest known that suffices */
     *strength = 0;
     ADCGS_TRY(try_strength(t, 0, value, error));
     if (*value <= w->high)
@@ -91,14 +90,14 @@ static adcgs_status seek(adcgs_trainer *t, const window *w, double *strength, do
     return settle(t, *strength, error);
 }
 
-/** Drop the anchors that show least, so many that the size is met as far as the rest takes bytes in proportion. */
+/** Drops the least visible anchors, as many as the size requires if bytes are proportional to anchors. */
 static adcgs_status prune(adcgs_trainer *t, const window *w, double bytes, adcgs_error *error)
 {
     const double fixed = ADCGS_MIN(t->rate_control.fixed, w->high), share = (w->high - fixed) / (bytes - fixed);
     return adcgs_prune_anchors(t, (uint32_t)(t->f->n * fmin(fmax(share, PRUNE_LEAST), PRUNE_MOST)), error);
 }
 
-/** Meet the window; a size where levels cannot be made cheap enough, with fewer anchors. */
+/** Meets the window. If RDOQ alone cannot reach a size, prunes anchors. */
 static adcgs_status land(adcgs_trainer *t, const window *w, adcgs_error *error)
 {
     double strength, value;

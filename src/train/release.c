@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Settled anchors that learn again. */
+/** \file Unfreezing of anchors. */
 #include "train/release.h"
 
 #include "train/anchor_set.h"
@@ -9,15 +9,15 @@
 #include <stdlib.h>
 
 enum { TIMES = 3, MOMENTS = 16, CAMERAS = 4, ANCHOR_BITS = 180 };
-#define VISIBLE 0.02f /* of a colour: by so much an anchor's part of the picture is another than what it draws */
-#define SEEN 2.0f     /* pixels of all views of a moment that an anchor makes up, below which these do not tell */
-#define WORTH 4.0     /* times that the loss falls by more than squares of errors tell */
+#define VISIBLE 0.02f /* colour difference: minimum error of an anchor's contribution */
+#define SEEN 2.0f     /* pixels: minimum coverage over all views of a frame, below which they are ignored */
+#define WORTH 4.0     /* ratio of the actual decrease of the loss to the decrease of squared errors */
 
-/** At each of some moments, first the earliest: what its views miss where an anchor is, and how many pixels it makes up. */
+/** Residuals and coverage of each anchor in some frames, the earliest first. */
 typedef struct moments {
-    uint32_t n;            /* moments */
+    uint32_t n;            /* number of frames */
     size_t anchors;
-    float views[MOMENTS];  /* that were asked */
+    float views[MOMENTS];  /* number of views used */
     float (*missing)[3];   /* [n][anchors] sums over pixels */
     float *pixels;         /* [n][anchors] */
 } moments;
@@ -40,7 +40,7 @@ static adcgs_status moments_init(moments *m, const adcgs_fmodel *f, adcgs_error 
     return adcgs_alloc_status(error);
 }
 
-/** What is missing of a view, shared out among those who draw it. */
+/** Adds a view's residual, distributed over the anchors that contribute. */
 static adcgs_status add_view(adcgs_trainer *t, moments *m, uint32_t index, adcgs_error *error)
 {
     const adcgs_train_view *v = &t->views[index];
@@ -65,7 +65,7 @@ static adcgs_status add_view(adcgs_trainer *t, moments *m, uint32_t index, adcgs
     return ADCGS_OK;
 }
 
-/** The views of a moment: some that show it. */
+/** Adds a frame, with some of its views. */
 static adcgs_status add_moment(adcgs_trainer *t, moments *m, uint32_t index, adcgs_error *error)
 {
     const float at = t->views[index].t;
@@ -86,7 +86,7 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** What a moment's views miss where an anchor is, in the channel that misses most; 0 where they do not tell. */
+/** Residual at an anchor in a frame, in the channel where it is largest; 0 if coverage is too low. */
 static float missing_at(const moments *m, uint32_t moment, uint32_t anchor)
 {
     const size_t at = moment * m->anchors + anchor;
@@ -96,7 +96,7 @@ static float missing_at(const moments *m, uint32_t moment, uint32_t anchor)
     return off;
 }
 
-/** The same less what is missed at the earliest moment, which the segment before has learnt: its errors are no news. */
+/** The same minus the residual in the earliest frame, which the previous segment has trained: its errors are not new. */
 static float change_at(const moments *m, uint32_t moment, uint32_t anchor)
 {
     const size_t at = moment * m->anchors + anchor;
@@ -108,12 +108,12 @@ static float change_at(const moments *m, uint32_t moment, uint32_t anchor)
     return off;
 }
 
-/** What moments say of an anchor: what they miss, in the median and the most, and how many pixels of a view it makes up. */
+/** Residual of an anchor over frames, median and maximum, and its coverage in pixels per view. */
 typedef struct verdict {
     float median, most, pixels;
 } verdict;
 
-/** Of what stands still it counts what is missed, and has not been missed at the earliest moment. */
+/** For static anchors, a residual counts only if it was not present in the earliest frame. */
 static verdict judge(const moments *m, uint32_t anchor, int moves)
 {
     verdict v = { 0, 0, 0 };
@@ -133,7 +133,7 @@ static verdict judge(const moments *m, uint32_t anchor, int moves)
     return v;
 }
 
-/** Whether what is missed can be seen, and is worth the bits of a new anchor. */
+/** True if the residual is visible and worth the bits of a new anchor. */
 static int is_worth(const adcgs_trainer *t, float missing, float pixels)
 {
     const double area = (double)t->views[0].view.width * t->views[0].view.height;
@@ -141,7 +141,7 @@ static int is_worth(const adcgs_trainer *t, float missing, float pixels)
     return missing > VISIBLE && gain > ANCHOR_BITS * adcgs_price_of_bit(t);
 }
 
-/** Those that stand still, or those that move. *idle: nothing moves, and nothing has become another at any moment. */
+/** Unfreezes static or moving anchors. *idle: nothing moves, and nothing has changed in any frame. */
 static void choose(adcgs_trainer *t, const moments *m, int moving, int *idle)
 {
     adcgs_fmodel *f = t->f;
@@ -177,7 +177,7 @@ static adcgs_status release(adcgs_trainer *t, int moving, int *idle, adcgs_error
     return status;
 }
 
-/** What stands still is asked before anything learns and so disturbs the picture; what moves, once motion has been followed. */
+/** Static anchors are tested before training disturbs the render; moving anchors, once motion has been tracked. */
 static double moment_of(const adcgs_train_config *c, int time)
 {
     const double from = (double)c->curriculum_until, until = (double)c->densify_until;
@@ -190,7 +190,7 @@ adcgs_status adcgs_release_step(adcgs_trainer *t, double progress, adcgs_error *
     if (!t->f->follows || t->released >= TIMES || progress < moment_of(&t->config, t->released))
         return ADCGS_OK;
     ADCGS_TRY(release(t, t->released > 0, &idle, error));
-    if (idle && t->released == 0) /* there is nothing to learn: the run is over */
+    if (idle && t->released == 0) /* nothing to train: the run is finished */
         t->iteration = t->config.iterations;
     t->released++;
     return ADCGS_OK;

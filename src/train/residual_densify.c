@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What is missing. */
+/** \file Densification from residuals. */
 #include "train/residual_densify.h"
 
 #include "train/views.h"
@@ -8,18 +8,18 @@
 #include <stdlib.h>
 
 enum { VIEWS_MOST = 32, VIEWS_LEAST = 3, PIXELS_MOST = 256, DEPTHS = 256 };
-enum { SLACK = 3 /* steps of depth between neighbours */, VOTES_LEAST = 3 };
-#define DIFFERENCE 0.08f /* of a pixel that is followed */
-#define NEAREST 0.25f    /* of a ray, scene units */
+enum { SLACK = 3 /* depth steps within which neighbours agree */, VOTES_LEAST = 3 };
+#define DIFFERENCE 0.08f /* minimum residual of a pixel whose ray is searched */
+#define NEAREST 0.25f    /* depth range of a ray, scene units */
 #define FARTHEST 8.0f
-#define AGREES 0.4f      /* share of the pixel's difference that another camera has to show */
+#define AGREES 0.4f      /* share of the pixel's residual that another camera must show */
 
 typedef struct look {
     const adcgs_train_view *view;
     int w, h;
-    float *off;   /* [h][w] taken - drawn, mean of the channels */
-    float *more;  /* [h][w] the most of it about a pixel */
-    float *taken; /* [3][h][w] as the mean camera would have taken it */
+    float *off;   /* [h][w] recorded - rendered, mean of the channels */
+    float *more;  /* [h][w] its maximum over the 3x3 window */
+    float *taken; /* [3][h][w] recorded image as the mean camera would show it */
 } look;
 
 typedef struct pixel {
@@ -39,7 +39,7 @@ static int by_score(const void *a, const void *b)
     return p->score != q->score ? (p->score < q->score) - (p->score > q->score) : memcmp(p->x, q->x, sizeof p->x);
 }
 
-/** The most that is missing about each pixel: rays are followed in steps of several. */
+/** Maximum residual around each pixel, because rays are sampled in steps of several pixels. */
 static void spread(look *l)
 {
     for (int y = 0; y < l->h; y++)
@@ -74,13 +74,13 @@ static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error 
     return ADCGS_OK;
 }
 
-/** The rays of a view's pixels at which something is missing, and what the other cameras say of places along them. */
+/** Rays of a view's pixels with large residuals, and the residuals of other cameras along them. */
 typedef struct rays {
     uint32_t n;
     pixel pixel[PIXELS_MOST];
-    float agreed[PIXELS_MOST][DEPTHS]; /* how much all that have the place in their pictures miss, too; 0: not all of them do */
-    uint8_t alone[PIXELS_MOST][DEPTHS];  /* only one has it in its picture */
-    uint8_t about[PIXELS_MOST][DEPTHS];  /* they agree somewhere near that depth */
+    float agreed[PIXELS_MOST][DEPTHS]; /* sum of the other cameras' residuals; 0: less than 3/4 of those that see it agree */
+    uint8_t alone[PIXELS_MOST][DEPTHS];  /* 1: only one other camera sees the point */
+    uint8_t about[PIXELS_MOST][DEPTHS];  /* 1: the cameras agree near this depth */
 } rays;
 
 static float depth_of(int step)
@@ -88,7 +88,7 @@ static float depth_of(int step)
     return 1 / (1 / FARTHEST + (float)step / (DEPTHS - 1) * (1 / NEAREST - 1 / FARTHEST));
 }
 
-/** The place at a depth along a pixel's ray. */
+/** The point at a depth on a pixel's ray. */
 static void lift(const look *l, int at, float d, float x[3])
 {
     const adcgs_view *v = &l->view->view;
@@ -98,7 +98,7 @@ static void lift(const look *l, int at, float d, float x[3])
         x[a] = v->rotation[a] * c[0] + v->rotation[3 + a] * c[1] + v->rotation[6 + a] * c[2];
 }
 
-/** Ask the other cameras whether they miss something at places along a pixel's ray. */
+/** Compares the residuals of the other cameras at points along a pixel's ray. */
 static void ask(const look *looks, int n, int own, rays *r, uint32_t i)
 {
     const pixel p = r->pixel[i];
@@ -122,7 +122,7 @@ static void ask(const look *looks, int n, int own, rays *r, uint32_t i)
     }
 }
 
-/** Count the pixels near one whose rays have a place at about a depth, too, for each depth; returns how many are near. */
+/** Counts, for each depth, the rays of nearby pixels that also agree near it. \return the number of nearby pixels. */
 static int count_near(const rays *r, uint32_t i, int w, int votes[DEPTHS])
 {
     const int px = r->pixel[i].at % w, py = r->pixel[i].at / w;
@@ -140,16 +140,15 @@ static int count_near(const rays *r, uint32_t i, int w, int votes[DEPTHS])
 }
 
 /**
- * The step of depth at which something is missing along a pixel's ray, -1 if there is none: where the most cameras agree, and the
- * most of the pixels about it have something, too, since what is near in a picture is mostly near in depth. Two cameras alone are
- * not believed without such neighbours.
+ * Finds the depth step of a residual on a pixel's ray, or -1. It is the step where the most cameras and the most nearby pixels
+ * agree, because nearby pixels mostly have similar depths. A pair of cameras needs support from nearby pixels.
  */
 static int settle(const rays *r, uint32_t i, int w, float *score)
 {
     int votes[DEPTHS], first = -1, last = -1;
     const int near = count_near(r, i, w, votes);
     *score = 0;
-    for (int step = 0; step < DEPTHS; step++) { /* the farthest first: what is too near is in the way of other cameras */
+    for (int step = 0; step < DEPTHS; step++) { /* the farthest first: a point that is too near occludes other cameras */
         const float s = r->agreed[i][step] * (float)(1 + votes[step]) / (float)(1 + near);
         if (r->alone[i][step] && (votes[step] < VOTES_LEAST || 2 * votes[step] < near))
             continue;
@@ -162,7 +161,7 @@ static int settle(const rays *r, uint32_t i, int w, float *score)
     return *score > 0 ? (first + last) / 2 : -1;
 }
 
-/** The pixels of a view at which the most is missing. */
+/** Selects the pixels with the largest residuals of a view. */
 static adcgs_status pick(rays *r, const look *l, adcgs_error *error)
 {
     pixel *list = adcgs_alloc(NULL, (size_t)l->w * (size_t)l->h, sizeof *list, error);
@@ -204,8 +203,8 @@ static adcgs_status follow(const look *looks, int n, int own, rays *r, adcgs_res
 }
 
 /**
- * Whether a view, the index-th of so many at a moment, is one of the VIEWS_MOST that are looked at: spread evenly over all, and
- * others each time.
+ * True if a view, given by its index in a frame of `views` views, is one of the VIEWS_MOST to use. They are evenly spread and
+ * vary with `turn`.
  */
 static int is_taken(uint32_t index, uint32_t views, uint32_t turn)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a sample of training views says of the model. */
+/** \file Measurements on a sample of training views. */
 #include "train/sample.h"
 
 #include "grad/random.h"
@@ -9,10 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/** Views by which networks are judged; of each a quarter where it has its full size, since searches judge hundreds of times. */
+/** Views for judging networks. At full size only a quarter of each view is used, because a search judges hundreds of times. */
 enum { NETWORK_VIEWS = 16 };
 
-/** Loss of a view, of which the model's primitives are there; of one of its quarters alone if quarter is 0 to 3. */
+/** Loss of a view whose primitives are in the pass, or of one of its quarters if quarter is 0 to 3. */
 static adcgs_status view_loss(adcgs_trainer *t, uint32_t picked, int quarter, double *loss, adcgs_error *error)
 {
     adcgs_view v = t->views[picked].view;
@@ -61,12 +61,12 @@ adcgs_status adcgs_sample_distortion(adcgs_trainer *t, int group, double *bits, 
     }
     double loss;
     ADCGS_TRY(sample_loss(t, NETWORK_VIEWS, 1, t->divide == t->config.scale, &loss, error));
-    /* Without a price of bits the loss alone decides: no bits come near to it. */
+    /* Without a price of bits only the loss decides, since no number of bits comes close to it. */
     *bits = loss / fmax(adcgs_price_of_bit(t), 1e-30);
     return ADCGS_OK;
 }
 
-/** PSNR of the picture of a view, as a player would round it, against the one taken. */
+/** PSNR of a view's render, rounded as in a player, against the recorded image. */
 static adcgs_status picture_psnr(adcgs_trainer *t, const adcgs_view *view, const float *taken, float *image, double *psnr,
                                  adcgs_error *error)
 {
@@ -84,7 +84,7 @@ static adcgs_status loaded_psnr(adcgs_trainer *t, uint32_t index, double *psnr, 
     return picture_psnr(t, &t->views[index].view, t->taken, t->image, psnr, error);
 }
 
-/** The same of a view that is not loaded in full size. */
+/** The same for a view that is not loaded at full size. */
 static adcgs_status full_psnr(adcgs_trainer *t, uint32_t index, double *psnr, adcgs_error *error)
 {
     adcgs_camera camera;

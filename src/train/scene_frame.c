@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The scene's frame of reference. */
+/** \file Coordinate system of the scene. */
 #include "train/scene_frame.h"
 
 #include "camera/rotation.h"
@@ -8,26 +8,29 @@
 
 #include <math.h>
 
-/* Training cameras that are asked for the depth of the points that they see, and points that each is asked for. */
+/* Training cameras for the median depth of visible points; points tested per camera; minimum number of visible points. */
 enum { CAMERAS_MOST = 64, POINTS_MOST = 2000, SEEN_LEAST = 8 };
-/*
- * IN_FRONT: share of the training cameras that must have the focus of their axes in front. NEAR, FAR: its depth, over the median
- * depth of the points that a camera sees, in the median. Inward captures at hand (five) have 1.04 to 1.21.
- */
-static const double IN_FRONT = 0.75, NEAR = 0.4, FAR = 2.5;
-/* Cameras that look outwards stand nearer to their focus than to anything else: the unit is at least so much of the depth. */
+static const double
+    /* Minimum share of the training cameras that have the focus of their axes in front. */
+    IN_FRONT = 0.75,
+    /*
+     * Bounds of the focus's depth relative to the median depth of the points that a camera sees, median over cameras. Five
+     * inward captures have 1.04 to 1.21.
+     */
+    NEAR = 0.4, FAR = 2.5;
+/* Cameras that look outwards are closer to their focus than to anything else. So the unit is at least this share of the depth. */
 static const double UNIT_LEAST = 0.4;
-/* Length of the mean of unit vectors above which cameras share a direction of view. */
+/* Length of the mean of unit vectors above which cameras share a viewing direction. */
 static const double SAME_WAY = 0.3;
 
-/** Points that cameras look at: the median depth of the points that each sees along its axis. */
+/** Median depth along the axis of the points that each camera sees. */
 typedef struct gaze {
     uint32_t n;                    /**< cameras that see points */
     uint32_t view[CAMERAS_MOST];
     double depth[CAMERAS_MOST];    /**< world units, > 0 */
 } gaze;
 
-/** Solve the symmetric 3x3 system a x = b by Cramer's rule; 0 if it is singular. */
+/** Solves the symmetric 3x3 system a x = b by Cramer's rule. Returns 0 if it is singular. */
 static int solve3(const double a[9], const double b[3], double x[3])
 {
     const double c0 = a[4] * a[8] - a[5] * a[7], c1 = a[5] * a[6] - a[3] * a[8], c2 = a[3] * a[7] - a[4] * a[6];
@@ -40,7 +43,7 @@ static int solve3(const double a[9], const double b[3], double x[3])
     return 1;
 }
 
-/** The point nearest to all optical axes in the least-squares sense; 0 if the axes are parallel. */
+/** The point nearest to all optical axes in the least-squares sense. Returns 0 if the axes are parallel. */
 static int nearest_to_axes(const adcgs_scene *scene, double focus[3])
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -58,14 +61,14 @@ static int nearest_to_axes(const adcgs_scene *scene, double focus[3])
     return solve3(a, b, focus);
 }
 
-/** How far in front of a training camera a point lies, along its axis. */
+/** Depth of a point along the axis of a training camera. */
 static double depth_of(const adcgs_scene *scene, uint32_t view, const double x[3])
 {
     const double *m = scene->views[ADCGS_SPLIT_TRAIN][view].camera.cam_to_world;
     return (x[0] - m[3]) * m[2] + (x[1] - m[7]) * m[6] + (x[2] - m[11]) * m[10];
 }
 
-/** The median depth of the scene's points that a training camera sees; 0 where it sees too few. room: for POINTS_MOST. */
+/** Median depth of the scene's points that a training camera sees; 0 if it sees too few. room: for POINTS_MOST values. */
 static double median_depth(const adcgs_scene *scene, uint32_t view, double *room)
 {
     const adcgs_camera *camera = &scene->views[ADCGS_SPLIT_TRAIN][view].camera;
@@ -110,7 +113,7 @@ static double median(double *values, uint32_t n)
     return values[n / 2];
 }
 
-/** Whether most training cameras have a point in front, and about as far away as the things that they see. */
+/** True if most training cameras have the point in front, at about the depth of the points that they see. */
 static int is_looked_at(const adcgs_scene *scene, const gaze *g, const double x[3])
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -126,7 +129,7 @@ static int is_looked_at(const adcgs_scene *scene, const gaze *g, const double x[
     return usual >= NEAR && usual <= FAR;
 }
 
-/** The median, axis by axis, of the points that cameras look at. */
+/** Median per axis of the points at each camera's median depth. */
 static void middle_of_gaze(const adcgs_scene *scene, const gaze *g, double focus[3])
 {
     double at[CAMERAS_MOST];
@@ -139,7 +142,7 @@ static void middle_of_gaze(const adcgs_scene *scene, const gaze *g, double focus
     }
 }
 
-/** In front of the mean camera; cameras that look all round have their middle as the focus. */
+/** Focus in front of the mean camera. For cameras that look in all directions, it is their centroid. */
 static void before_cameras(const adcgs_scene *scene, double extent, double focus[3])
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -158,7 +161,7 @@ static void before_cameras(const adcgs_scene *scene, double extent, double focus
         focus[a] += extent * axis[a] / length;
 }
 
-/** The distance of the training cameras from the origin in the median, or the depth of things where that is much more. */
+/** Median distance of the training cameras from the origin, or UNIT_LEAST of the median depth if that is larger. */
 static adcgs_status find_scale(const adcgs_scene *scene, gaze *g, double extent, const double origin[3], double *scale,
                                adcgs_error *error)
 {
@@ -173,7 +176,7 @@ static adcgs_status find_scale(const adcgs_scene *scene, gaze *g, double extent,
     }
     const double usual = median(distance, n), least = g->n ? UNIT_LEAST * median(g->depth, g->n) : 0;
     adcgs_free(NULL, distance);
-    *scale = usual > ADCGS_EXTENT_NOTHING * extent ? usual : extent; /* all may stand in one place */
+    *scale = usual > ADCGS_EXTENT_NOTHING * extent ? usual : extent; /* all cameras may be in one position */
     *scale = fmax(*scale, least);
     return ADCGS_OK;
 }

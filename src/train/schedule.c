@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/** What the configuration makes of a group's rates, by what they move. */
+/** Factor of a group's learning rates from the configuration. */
 static float times_of(const adcgs_train_config *c, int group)
 {
     switch (group) {
@@ -43,7 +43,7 @@ void adcgs_train_rates(const adcgs_train_config *c, adcgs_fmodel *f)
 float adcgs_train_rate(const adcgs_train_config *c, float first, float last, double progress)
 {
     const double from = (double)c->rates_fall_from;
-    if (!(first > 0)) /* what is not to learn */
+    if (!(first > 0)) /* frozen group */
         return 0;
     return progress <= from ? first : first * powf(last / first, (float)((progress - from) / (1 - from)));
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Settings by name: read, written, compared, listed, all from the one table. */
+/** \file Settings by name: reading, writing, comparison and lists, all from one table. */
 #include "train/settings.h"
 
 #include <math.h>
@@ -51,7 +51,7 @@ void adcgs_setting_put(const adcgs_setting *s, adcgs_train_config *c, double val
     }
 }
 
-/** A number as the setting's field would hold it: bounds and presets are decimals, fields may be binary32. */
+/** A number as the setting's field holds it: bounds and presets are decimals, fields may be binary32. */
 static double as_held(const adcgs_setting *s, double value)
 {
     return s->kind == ADCGS_SETTING_REAL ? (double)(float)value : value;
@@ -119,17 +119,17 @@ static adcgs_status fail_relation(const adcgs_train_config *c, const char *a, co
                       adcgs_setting_print(y, adcgs_setting_get(y, c), value[1]), expected);
 }
 
-/** What settings owe each other. */
+/** Checks the relations between settings. */
 static adcgs_status check_relations(const adcgs_train_config *c, adcgs_error *error)
 {
     if (c->params.n_fg % c->params.chunks)
         return fail_relation(c, "n_fg", "chunks", "a multiple of chunks", error);
     if (c->params.time_rows && !c->params.time_width)
-        return fail_relation(c, "time_rows", "time_width", "rows of at least one value", error);
+        return fail_relation(c, "time_rows", "time_width", "a time_width of at least 1", error);
     if (c->start_anchors > c->max_anchors)
-        return fail_relation(c, "start_anchors", "max_anchors", "no more to begin with than there may be", error);
+        return fail_relation(c, "start_anchors", "max_anchors", "at most max_anchors to start with", error);
     if (c->freeze_from < c->round_from)
-        return fail_relation(c, "freeze_from", "round_from", "values to be rounded before they are final", error);
+        return fail_relation(c, "freeze_from", "round_from", "freeze_from not before round_from", error);
     return ADCGS_OK;
 }
 
@@ -146,9 +146,9 @@ static adcgs_status check_target(const adcgs_train_config *c, adcgs_error *error
         return adcgs_fail(error, ADCGS_ERR_USAGE, "target of %g %s: expected %g to %g", c->target_value,
                           size ? "bytes" : "dB", min, max);
     if (c->without_rate || c->without_rounding)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "a size or PSNR to meet needs rate: neither --without rate nor --uncompressed");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "a target size or PSNR needs rate: remove --without rate and --uncompressed");
     if (c->own_lambda)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "lambda=%g and a size or PSNR to meet, which steers it: expected one of them",
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "lambda=%g and a target size or PSNR, which controls it: expected one of them",
                           (double)c->lambda);
     return ADCGS_OK;
 }
@@ -175,7 +175,9 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
     return ADCGS_OK;
 }
 
-/** A value in range, chosen by hand. Fewer anchors than a preset begins with may be asked for; it then begins with these. */
+/**
+ * Sets a value in range as the user's choice. If max_anchors is below the preset's start_anchors, start_anchors is lowered to it.
+ */
 static void choose(adcgs_train_config *c, const adcgs_setting *s, double value)
 {
     adcgs_setting_put(s, c, value);
@@ -192,7 +194,7 @@ adcgs_status adcgs_train_set_value(adcgs_train_config *config, const char *name,
     const adcgs_setting *s = adcgs_setting_find(name);
     char text[ADCGS_SETTING_TEXT];
     if (!s || s->group == ADCGS_SETTING_SWITCHES)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown setting '%s': --set list shows what there is", name);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown setting '%s': --set list shows all settings", name);
     if (!adcgs_setting_may_be(s, value)) {
         snprintf(text, sizeof text, "%.9g", value);
         return fail_range(s, text, error);
@@ -201,7 +203,7 @@ adcgs_status adcgs_train_set_value(adcgs_train_config *config, const char *name,
     return ADCGS_OK;
 }
 
-/** "name=value", which it may change. */
+/** Sets one "name=value"; modifies the text. */
 static adcgs_status set_one(adcgs_train_config *c, char *text, adcgs_error *error)
 {
     char *const equals = strchr(text, '='), *end = NULL;
@@ -231,7 +233,7 @@ adcgs_status adcgs_train_set(adcgs_train_config *config, const char *text, adcgs
     return ADCGS_OK;
 }
 
-/* ---- Telling ---- */
+/* ---- Lists ---- */
 
 const char *adcgs_setting_in_list(const char *list, const char *name)
 {
@@ -283,9 +285,9 @@ void adcgs_train_list(const adcgs_train_config *config, FILE *file)
         [ADCGS_SETTING_NETWORKS] = "Networks",
         [ADCGS_SETTING_STEPS] = "Grid and quantiser steps",
         [ADCGS_SETTING_ANCHORS] = "Anchors",
-        [ADCGS_SETTING_MOMENTS] = "Moments, as fractions of the run; beyond 1 they never come",
+        [ADCGS_SETTING_MOMENTS] = "Times, as fractions of the run; above 1: never",
     };
-    fprintf(file, "Settings of preset %s: name, value, what it affects, meaning, range.\n"
+    fprintf(file, "Settings of preset %s: name, value, effects, meaning, range.\n"
                   "S: speed, B: bytes of the file, Q: quality, M: memory in training.\n", config->preset);
     int group = -1;
     for (const adcgs_setting *s = adcgs_settings; s->name; s++) {

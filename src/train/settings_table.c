@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * All settings, a row each: name and field, what it trades, range, value in the presets draft, fast, medium, slow and paper,
- * one line of help. The order is that of lists and of the man page. Preset paper keeps to the sizes and the order of events of
- * the published method (Huang et al. 2025, ADC-GS, IJCAI; section 4.1, appendix A), without coarse-to-fine.
+ * All settings, one row each: name and field, effects, range, values in the presets draft, fast, medium, slow and paper, and one
+ * line of help. Lists and the man page have the same order. Preset paper follows the sizes and the schedule of the published
+ * method (Huang et al. 2025, ADC-GS, IJCAI; section 4.1, appendix A), without coarse-to-fine.
  */
 #include "train/settings.h"
 
@@ -28,7 +28,7 @@ const char *const adcgs_train_presets[] = { "draft", "fast", "medium", "slow", "
 #define ALL(x) { x, x, x, x, x }
 #define BUT_PAPER(x, paper) { x, x, x, x, paper }
 
-/* A row: most are bound from the beginning, and nothing else asks whether they were chosen by hand. */
+/* A row: most settings bind a run from the start, and nothing depends on whether the user set them. */
 #define ROW(name, field, own, group, binds, trades, min, max, ...) \
     { name, KIND(field), AT(field), own, ADCGS_SETTING_##group, ADCGS_BINDS_##binds, trades, min, max, __VA_ARGS__ }
 #define RUN(name, ...) ROW(#name, name, 0, RUN, ALWAYS, __VA_ARGS__)
@@ -57,11 +57,13 @@ const adcgs_setting adcgs_settings[] = {
     RUN(black_levels, Q, 0, 1, ALL(1), "1: cameras have a black level each while the scene is trained"),
     RUN(scale, S | Q | M, 1, 64, ALL(1), "the pictures' width and height are divided by this"),
 
-    /* Rate in the loss: Balle et al. 2017, End-to-end optimized image compression, ICLR. Choice of levels by rate and distortion:
+    /*
+     * Rate in the loss: Balle et al. 2017, End-to-end optimized image compression, ICLR. Choice of levels by rate and distortion:
      * Ramchandran and Vetterli 1994, IEEE Trans. Image Processing 3(5). SSIM in the loss: Kerbl et al. 2023, 3D Gaussian
-     * splatting, SIGGRAPH. Neighbours that move alike: Sorkine and Alexa 2007, As-rigid-as-possible surface modeling, SGP; Luiten
-     * et al. 2024, Dynamic 3D Gaussians, 3DV. A price of size: Lombardi et al. 2021, Mixture of volumetric primitives, SIGGRAPH;
-     * Lu et al. 2024, Scaffold-GS, CVPR. Dropout: Srivastava et al. 2014, JMLR 15. */
+     * splatting, SIGGRAPH. Rigidity between neighbours: Sorkine and Alexa 2007, As-rigid-as-possible surface modeling, SGP;
+     * Luiten et al. 2024, Dynamic 3D Gaussians, 3DV. Scale penalty: Lombardi et al. 2021, Mixture of volumetric primitives,
+     * SIGGRAPH; Lu et al. 2024, Scaffold-GS, CVPR. Dropout: Srivastava et al. 2014, JMLR 15.
+     */
     ROW("lambda", lambda, AT(own_lambda), LOSS, WITH_LAMBDA, B | Q, 0, 1000, ALL(0.1),
         "loss per mebibyte of features and networks, more makes smaller files; unless given, in proportion to contrast"),
     LOSS(network_rate, B | Q, 0, 1000, BUT_PAPER(1, 0), "weight of the networks' own bits, relative to those of features"),
@@ -138,8 +140,10 @@ const adcgs_setting adcgs_settings[] = {
     ANCHOR(still_below, S | B | Q, 0, 1e6, BUT_PAPER(1, 0),
            "effect of time, 1 can just be seen, below which an anchor becomes static"),
 
-    /* Curriculum: Bengio et al. 2009, ICML. Coarse to fine: Girish et al. 2024, EAGLES, ECCV. Noise in place of rounding: Balle
-     * et al. 2017. Means of the last iterations: Izmailov et al. 2018, Averaging weights, UAI. */
+    /*
+     * Curriculum: Bengio et al. 2009, ICML. Coarse to fine: Girish et al. 2024, EAGLES, ECCV. Noise in place of rounding: Balle
+     * et al. 2017. Averages of the last iterations: Izmailov et al. 2018, Averaging weights, UAI.
+     */
     MOMENT(curriculum_begin, S | Q, 1, ALL(0.1), "share of views, about the middle of time, that training begins with"),
     MOMENT(curriculum_until, S | Q, 2, BUT_PAPER(0.25, 0), "all views are trained on from here"),
     MOMENT(rates_fall_from, S | Q, 2, BUT_PAPER(0.3, 0), "learning rates stay as they are until here, then fall"),

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file An iteration shared by a team. */
+/** \file Sharing of an iteration between the runs of a team. */
 #include "train/share.h"
 
 typedef struct sharing {
     adcgs_trainer *t;
     const adcgs_team *team;
-    size_t slice[ADCGS_TREE_MOST + 1]; /* where each rank's begins */
-    size_t own;                        /* how long this one's is */
-    float *room;                       /* [own] for each part of others */
+    size_t slice[ADCGS_TREE_MOST + 1]; /* start of each rank's slice */
+    size_t own;                        /* length of this rank's slice */
+    float *room;                       /* [own] for each part of other ranks */
 } sharing;
 
 uint32_t adcgs_share_place(const adcgs_trainer *t, int rank)
@@ -16,7 +16,7 @@ uint32_t adcgs_share_place(const adcgs_trainer *t, int rank)
     return t->team ? n * (uint32_t)rank / (uint32_t)t->team->size : rank ? n : 0;
 }
 
-/** What a rank's places make. */
+/** The partial sums that result from a rank's places. */
 static int parts_of(const adcgs_trainer *t, int rank, adcgs_tree_part *parts)
 {
     int n = 0;
@@ -43,7 +43,7 @@ static adcgs_status begin_sharing(sharing *s, adcgs_trainer *t, adcgs_error *err
     return s->room ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
-/** Everyone gets the slice that is theirs of everyone's parts. */
+/** Exchanges partial sums: each rank receives its slice of all parts. */
 static adcgs_status swap_slices(const sharing *s, const adcgs_tree_part *own, int n_own, adcgs_error *error)
 {
     adcgs_ranks_part out[2 * ADCGS_TREE_MOST], in[ADCGS_TREE_MOST];
@@ -61,7 +61,7 @@ static adcgs_status swap_slices(const sharing *s, const adcgs_tree_part *own, in
     return s->team->swap(s->team->user, out, n_out, in, n_in, error);
 }
 
-/** Sum this run's slice of all parts. */
+/** Sums this run's slice of all parts. */
 static void sum_slice(const sharing *s, const adcgs_tree_part *own, int n_own)
 {
     adcgs_tree_part all[ADCGS_TREE_PARTS], parts[ADCGS_TREE_PARTS];

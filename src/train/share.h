@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * An iteration shared by a team: each run looks at some of the views, one behind the other, and sums what the tree lets it; then
- * each sums a slice of the numbers for all, so that what a run sends and gets is twice its gradients, however many they are.
- * Known as reduce-scatter and allgather (Thakur et al. 2005, Optimization of collective communication operations in MPICH);
- * here by a tree that does not follow from who has what.
+ * Sharing of an iteration between the runs of a team. Each run processes some consecutive views, and sums them as far as the tree
+ * allows. Then each run sums one slice of the numbers for all. So a run sends and receives twice the size of its gradients, for
+ * any number of runs. Known as reduce-scatter and allgather (Thakur et al. 2005, Optimization of collective communication
+ * operations in MPICH). The tree of additions here does not depend on the distribution.
  */
 #ifndef ADCGS_TRAIN_SHARE_H
 #define ADCGS_TRAIN_SHARE_H
 
 #include "train/state.h"
 
-/** The first of the places that a rank of the team looks at, of config.batch; those of all, for the rank behind the last. */
+/** First place of config.batch that a rank of the team processes; config.batch for the rank after the last. */
 uint32_t adcgs_share_place(const adcgs_trainer *trainer, int rank);
-/** own: what this run's places make. The first becomes the sum of all places, and batch.seen has what all have seen. */
+/**
+ * own: partial sums of this run's places. The first becomes the sum over all places, and batch.seen receives the results of all.
+ */
 adcgs_status adcgs_share(adcgs_trainer *trainer, const adcgs_tree_part *own, int n_own, adcgs_error *error);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Nearest voxels. Those of a cube of the octree follow each other in Morton order, so that the order itself is the tree; what a
- * voxel's neighbours in the order are away from it bounds what is looked for, and most cubes are farther off than that.
+ * Nearest voxels. The voxels of an octree cube are consecutive in Morton order, so the order itself is the tree. The distances to
+ * neighbours in the order bound the search, and most cubes are beyond that bound.
  */
 #include "train/spacing.h"
 
@@ -9,13 +9,13 @@
 
 #include <math.h>
 
-enum { NEAREST = 3, ABOUT = 4, FEW = 8 }; /* ABOUT: neighbours in the order that are asked, on each side; FEW: too few to part */
+enum { NEAREST = 3, ABOUT = 4, FEW = 8 }; /* ABOUT: neighbours tested per side; FEW: cubes this small are not split */
 
 typedef struct query {
     const uint32_t (*pos)[3];
     const uint64_t *code;
     uint32_t self;
-    uint64_t best[NEAREST]; /* squared distances, the least first */
+    uint64_t best[NEAREST]; /* squared distances, ascending */
 } query;
 
 static uint64_t distance2(const uint32_t a[3], const uint32_t b[3])
@@ -47,7 +47,7 @@ static uint64_t gap2(const uint32_t x[3], const uint32_t corner[3], int shift)
     return distance2(x, nearest);
 }
 
-/** The first of [low, high) whose code is not below. */
+/** First index of [low, high) whose code is not below `from`. */
 static uint32_t first_from(const uint64_t *code, uint32_t low, uint32_t high, uint64_t from)
 {
     while (low < high) {
@@ -60,7 +60,7 @@ static uint32_t first_from(const uint64_t *code, uint32_t low, uint32_t high, ui
     return low;
 }
 
-/** Look at a cube, which holds voxels low to high. */
+/** Searches a cube, which holds voxels low to high - 1. */
 static void look_in(query *q, uint32_t low, uint32_t high, const uint32_t corner[3], int shift)
 {
     const uint32_t *x = q->pos[q->self];
@@ -82,7 +82,7 @@ static void look_in(query *q, uint32_t low, uint32_t high, const uint32_t corner
     }
 }
 
-/** One more than a distance at which there are three, so that these count. */
+/** Sets the bound to one more than a squared distance within which three voxels lie, so that they count. */
 static void bound(query *q, uint32_t n)
 {
     const uint32_t low = q->self > ABOUT ? q->self - ABOUT : 0, high = ADCGS_MIN(n, q->self + ABOUT + 1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The stages of a run in their order. */
+/** \file The order of a run's stages. */
 #include "train/stages.h"
 
 #include "train/black_level.h"
@@ -19,7 +19,7 @@
 #include "train/views.h"
 #include "train/weight_steps.h"
 
-/* WEIGH_AFTER: before that many iterations motion has not had its chance. */
+/* WEIGH_AFTER: minimum iterations before motion is tested; it is not trained enough before. */
 enum { WEIGH_AFTER = 300, MEANS_EVERY = 100 };
 
 static adcgs_status round_values(adcgs_trainer *t, adcgs_error *error)
@@ -31,7 +31,7 @@ static adcgs_status round_values(adcgs_trainer *t, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** Go on from where the last iterations led in the mean. */
+/** Replaces the parameters by their average over the last iterations. */
 static void take_average(adcgs_trainer *t)
 {
     adcgs_weight_average_take(&t->average, t->f);
@@ -47,7 +47,7 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
         t->rested = 1;
         ADCGS_TRY(adcgs_rest_unchanging(t, error));
     }
-    if (!t->weighed && progress >= c->decide_at && !c->without_rate) { /* motion is found late: not before the other decisions */
+    if (!t->weighed && progress >= c->decide_at && !c->without_rate) { /* motion is found late, so not before decide_at */
         t->weighed = 1;
         if (t->iteration >= WEIGH_AFTER)
             ADCGS_TRY(adcgs_weigh_motion(t, error));
@@ -89,21 +89,21 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
 
 int adcgs_stages_divide(const adcgs_trainer *t, double progress)
 {
-    /* What is settled was learnt in full size, and is right in no other. */
+    /* Frozen anchors were trained at full size and fit no other. */
     return t->config.scale * (t->f->follows ? 1 : adcgs_coarse_divide(&t->config, progress));
 }
 
-/** Fraction of the views, by their distance from where the curriculum begins, that are trained on. */
+/** Fraction of the views in training, in order of their distance from the start of the curriculum. */
 static double window_of(const adcgs_train_config *c, double progress)
 {
     return progress < c->curriculum_until ? c->curriculum_begin + (1 - c->curriculum_begin) * progress / c->curriculum_until : 1;
 }
 
-/** Pictures of the size that is due. */
+/** Loads images at the current size. */
 static adcgs_status load_views(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const double begin = adcgs_seconds();
-    const int first = !t->divide && !t->lambda_used; /* of a restored run, too: until lambda is used, it may be another */
+    const int first = !t->divide && !t->lambda_used; /* also for a restored run: until lambda is used, it may differ */
     if (adcgs_stages_divide(t, progress) == t->divide)
         return ADCGS_OK;
     ADCGS_TRY(adcgs_trainer_load_views(t, adcgs_stages_divide(t, progress), error));
@@ -133,7 +133,7 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
     if (t->iteration == at)
         ADCGS_TRY(adcgs_rate_is_sought(t) ? adcgs_rate_search_step(t, progress, error) :
                                             adcgs_rate_control_step(t, progress, error));
-    t->torn = grows; /* a run that continued from here would grow again */
+    t->torn = grows; /* a run continued from this state would grow again */
     return ADCGS_OK;
 }
 

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The stages of a run in their order: this room's stages are called from here and from nowhere else. */
+/** \file The order of a run's stages. All stages of src/train are called from here only. */
 #ifndef ADCGS_TRAIN_STAGES_H
 #define ADCGS_TRAIN_STAGES_H
 
 #include "train/state.h"
 
-/** What is due before an iteration at this progress: pictures of another size, more of time, growth, stages, rate control. */
+/** Called before an iteration at this progress: image size, curriculum, growth, stages, rate control. */
 adcgs_status adcgs_stages_before(adcgs_trainer *trainer, double progress, adcgs_error *error);
-/** What is due of all stages that are still to come, with no iteration between them and no way back. */
+/** Runs all remaining stages without iterations between them and without a return to earlier states. */
 adcgs_status adcgs_stages_skip(adcgs_trainer *trainer, adcgs_error *error);
-/** What is due at the end. */
+/** Called at the end of a run. */
 adcgs_status adcgs_stages_finish(adcgs_trainer *trainer, adcgs_error *error);
-/** What the size of pictures is divided by at a progress (coarse to fine). */
+/** Factor of image reduction at a progress (coarse to fine). */
 int adcgs_stages_divide(const adcgs_trainer *trainer, double progress);
 
 #endif

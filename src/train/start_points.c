@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where anchors begin. */
+/** \file Initial points of anchors. */
 #include "train/start_points.h"
 
 #include "camera/rotation.h"
@@ -11,25 +11,25 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define START_SHARE 0.75   /* of max_anchors: points that are known lie where things are; what is missing then grows */
+#define START_SHARE 0.75   /* of max_anchors: known points lie on surfaces, and growth adds the rest */
 #define MATCHED_SHARE 0.9  /* of the points; the rest are random points where matching found nothing */
-#define MOVING_SHARE 0.25  /* of these; many more are too small to find motion */
-#define SPACING_LEAST (1 / 15.0f) /* of moments: in a long clip lives are shares of it, or there would be too many */
-#define FILM_LIVES 2.7f    /* times as long where each moment is seen from one place alone: more views show an anchor */
-#define FILM_FAR 0.4       /* within a clip, of the distance of cameras: what goes less far is found without lives */
-#define POINTS_LOOKED_AT 1000 /* for whether cameras see any */
-#define MOVING_MOST 2000   /* of a moment, that spans may grow from */
+#define MOVING_SHARE 0.25  /* of all points: moving ones; with many more, anchors are too small to find motion */
+#define SPACING_LEAST (1 / 15.0f) /* minimum frame spacing, as share of the clip; bounds the number of lifetimes in a long clip */
+#define FILM_LIVES 2.7f    /* factor of lifetimes for one moving camera: more views then see an anchor */
+#define FILM_FAR 0.4       /* camera distances per clip: slower motion is found without lifetimes */
+#define POINTS_LOOKED_AT 1000 /* points tested for visibility in any camera */
+#define MOVING_MOST 2000   /* maximum number per frame for lifetimes */
 
-/* ---- What the cameras see ---- */
+/* ---- Visibility ---- */
 
-/** Views that are looked at, at most. */
+/** Maximum number of views sampled. */
 enum { SIGHTS = 64 };
 
 typedef struct sight {
     const adcgs_scene *scene;
     double origin[3], scale;
     uint32_t n;             /* views sampled */
-    float *rgb[SIGHTS];        /* their pictures, reduced */
+    float *rgb[SIGHTS];        /* their images, reduced */
     adcgs_camera camera[SIGHTS];
 } sight;
 
@@ -58,8 +58,8 @@ static adcgs_status sight_init(sight *s, const adcgs_scene *scene, adcgs_error *
 }
 
 typedef struct glimpse {
-    int seen;      /* views whose frame holds the point */
-    int covered;   /* of those, views whose pixel is not background */
+    int seen;      /* views whose image contains the point */
+    int covered;   /* of these, views whose pixel is not background */
     double rgb[3]; /* mean colour over the covered views */
 } glimpse;
 
@@ -111,7 +111,7 @@ void adcgs_start_points_clear(adcgs_start_points *c)
     adcgs_free(NULL, c->matched);
 }
 
-/** One of the scene's own points in scene units; 0 if it is too far off. */
+/** Converts one of the scene's points to scene units. Returns 0 if it is too far away. */
 static int given_point(double x[3], const sight *s, uint32_t i)
 {
     int far = 0;
@@ -122,7 +122,7 @@ static int given_point(double x[3], const sight *s, uint32_t i)
     return !far;
 }
 
-/** Whether a camera sees any of the scene's own points, of which so many are looked at. */
+/** True if a camera sees any of the scene's points; at most `most` points are tested. */
 static int sees_points(const sight *s, uint32_t most)
 {
     const uint32_t n = ADCGS_MIN(s->scene->points.n, most);
@@ -133,7 +133,7 @@ static int sees_points(const sight *s, uint32_t most)
     return 0;
 }
 
-/** The scene's own points, in scene units, evenly thinned; those without a colour take that of the pictures. */
+/** Adds the scene's points in scene units, evenly thinned. Points without a colour get the colour of the images. */
 static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
 {
     const adcgs_scene_points *p = &s->scene->points;
@@ -152,13 +152,13 @@ static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
     }
 }
 
-/** Reach of the random points: the volume the cameras surround, and as a share of the points what lies behind it. */
+/** Random points: radius of the volume that the cameras surround, outer radius, and share of the points between them. */
 #define NEAR_RADIUS 1.2
 #define FAR_RADIUS 4.0
 #define FAR_SHARE 0.2
 #define CORE_SHARE 0.5 /* of the points lie in the inner half of the near radius, where all cameras look */
 
-/** Uniform in a ball, or beyond it with density falling as the cube of the distance, as pictures resolve it. */
+/** Uniform in a ball, or outside it with a density proportional to distance^-3, like the resolution of images. */
 static void random_place(double x[3], uint64_t seed, uint64_t i)
 {
     double length;
@@ -168,7 +168,7 @@ static void random_place(double x[3], uint64_t seed, uint64_t i)
             x[a] = 2 * adcgs_random_unit(seed, 1000, i * 4 + (uint64_t)a) - 1;
             length += x[a] * x[a];
         }
-        i ^= 0x5851f42d4c957f2du; /* rejected corners draw again */
+        i ^= 0x5851f42d4c957f2du; /* rejected corners are sampled again */
         seed++;
     } while (length > 1 || length < 1e-6);
     const double u = adcgs_random_unit(seed, 1001, i), far = NEAR_RADIUS * pow(FAR_RADIUS / NEAR_RADIUS, u / FAR_SHARE);
@@ -178,8 +178,8 @@ static void random_place(double x[3], uint64_t seed, uint64_t i)
 }
 
 /**
- * Random points that enough cameras see, and where alpha says so, that enough of them do not see through; where matched pictures
- * tell what is there, they stay away.
+ * Adds random points that enough cameras see and, with alpha, that are opaque in enough of them. Space known from matching stays
+ * empty.
  */
 static void random_points(adcgs_start_points *c, const sight *s, const adcgs_stereo *stereo, uint32_t wanted, uint64_t seed)
 {
@@ -199,7 +199,7 @@ static void random_points(adcgs_start_points *c, const sight *s, const adcgs_ste
     }
 }
 
-/* ---- Points that matched pictures give ---- */
+/* ---- Matched points ---- */
 
 static void add_matched(adcgs_start_points *c, const adcgs_stereo *found, const adcgs_stereo_point *p)
 {
@@ -213,7 +213,7 @@ static void add_matched(adcgs_start_points *c, const adcgs_stereo *found, const 
     c->n++;
 }
 
-/** The moment nearest to the middle of time. */
+/** The matched frame nearest to the middle of time. */
 static float middle_moment(const adcgs_stereo *s)
 {
     float best = s->n_moments ? s->moment[0] : 0.5f;
@@ -223,7 +223,7 @@ static float middle_moment(const adcgs_stereo *s)
     return best;
 }
 
-/** Kinds of what moves: part of a body, going by itself, or in place. */
+/** Kinds of moving points: part of a rigid body, independent, or on a static surface. */
 enum { OF_BODY, BY_ITSELF, IN_PLACE };
 
 static int kind_of(const adcgs_stereo_point *p)
@@ -239,7 +239,7 @@ static uint32_t count_moving(const adcgs_stereo *found, int kind)
     return n;
 }
 
-/** So many of the points of what moves, of all moments alike. */
+/** Adds at most `most` moving points of a kind, evenly spread over all frames. */
 static uint32_t add_moving(adcgs_start_points *c, const adcgs_stereo *found, int kind, uint32_t most)
 {
     const uint32_t there = count_moving(found, kind);
@@ -257,8 +257,8 @@ static uint32_t add_moving(adcgs_start_points *c, const adcgs_stereo *found, int
 }
 
 /**
- * Of bodies all moments show the same, so their share is less; of what goes by itself moments need points of their own, and what
- * is in place fills up.
+ * Divides the moving points among the kinds. All frames show the same bodies, so bodies get a smaller share. Independent motion
+ * needs points in each frame. Points on static surfaces fill the rest.
  */
 static void add_all_that_moves(adcgs_start_points *c, const adcgs_stereo *found, float half, uint32_t most)
 {
@@ -271,8 +271,8 @@ static void add_all_that_moves(adcgs_start_points *c, const adcgs_stereo *found,
 }
 
 /**
- * Points of all moments where they can live at them, those in place where others are too few, or of the one in the middle of
- * time; the rest is what is still.
+ * Adds matched points. With lifetimes: moving points of all frames, and points on static surfaces if there are too few. Without:
+ * moving points of the middle frame. The rest are static points.
  */
 static void matched_points(adcgs_start_points *c, const adcgs_stereo *found, uint32_t most, int spans, float half)
 {
@@ -295,18 +295,17 @@ static int has_points(const adcgs_scene *scene)
 }
 
 /**
- * A scene's own points, and what moves where that is matched; else what matched pictures give, and random ones where there is
- * nothing.
+ * Uses the scene's points, with matched moving points; otherwise matched points, and random points where matching found nothing.
  */
 static adcgs_status find_points(adcgs_start_points *c, const sight *s, const adcgs_train_config *config,
                                 const adcgs_stereo *found, adcgs_error *error)
 {
     const uint32_t all = config->start_anchors, moving = config->params.spans ? (uint32_t)(MOVING_SHARE * all) : 0;
-    /* Nothing is learnt of what no camera sees. A part of a scene may be of another place than its points. */
+    /* Points that no camera sees cannot be trained. A part of a scene may show a place without the scene's points. */
     const int given = has_points(s->scene) && sees_points(s, all);
     if (has_points(s->scene) && !given && !s->scene->whole && !sees_points(s, POINTS_LOOKED_AT))
         return adcgs_fail(error, ADCGS_ERR_DATA,
-                          "%s: no training camera sees any of the %u initial points: expected them in the poses' units and axes",
+                          "%s: no training camera sees any of the %u initial points: check their units and axes against poses",
                           s->scene->directory, s->scene->points.n);
     if (given || !has_points(s->scene))
         given_points(c, s, given ? all - moving : all);
@@ -318,7 +317,7 @@ static adcgs_status find_points(adcgs_start_points *c, const sight *s, const adc
     random_points(c, s, found, config->start_anchors, config->seed);
     return c->n ? ADCGS_OK
                 : adcgs_fail(error, ADCGS_ERR_DATA,
-                             "%s: no volume that at least a quarter of the training cameras see: check the poses",
+                             "%s: no volume is seen by a quarter of the training cameras: check the poses",
                              s->scene->directory);
 }
 
@@ -342,7 +341,7 @@ float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *foun
     return (found->film ? FILM_LIVES : 1) * config->span_moments * fmaxf(adcgs_stereo_spacing(found), SPACING_LEAST);
 }
 
-/** Whether what moves before a camera goes far, in the middle of its points. */
+/** True if the median moving point moves far, in a scene of one moving camera. */
 static adcgs_status goes_far(const adcgs_stereo *found, int *far, adcgs_error *error)
 {
     double *speed = adcgs_alloc(NULL, (size_t)found->n_moving + 1, sizeof *speed, error);
@@ -360,7 +359,7 @@ static adcgs_status goes_far(const adcgs_stereo *found, int *far, adcgs_error *e
     return ADCGS_OK;
 }
 
-/** Lives to begin with: as long before as behind, but for ends that are known. Bodies stay as they go. */
+/** Sets initial lifetimes: symmetric, except at known ends. Known ends do not apply to points of bodies. */
 static void set_lives(adcgs_stereo *found, const adcgs_train_config *config)
 {
     const float half = adcgs_half_life(config, found);
@@ -398,7 +397,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene
     set_lives(found, config);
     if (found->film && !found->n_bodies)
         ADCGS_TRY(goes_far(found, &far, error));
-    /* Segments of a stream have the same parameters, so those of a part cannot follow what is found in it. */
+    /* All segments of a stream have the same parameters, so a part's parameters cannot depend on its own content. */
     if (config->stereo && !(scene->whole ? whole : far && found->n_moving))
         config->params.spans = 0;
     if (!scene->whole || !config->params.spans || !whole)

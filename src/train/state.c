@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The state of a run, made and taken apart. */
+/** \file Creation and release of a run's state. */
 #include "train/state.h"
 
 #include "data/by_camera.h"
@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-#define SQUARE_ALONE 0.5f /* square_weight, at most, where one camera sees a moment */
+#define SQUARE_ALONE 0.5f /* maximum square_weight if one camera sees each frame */
 
 static size_t slots_of(const adcgs_fmodel *f)
 {
@@ -94,7 +94,7 @@ static adcgs_status create_viewpoints(adcgs_trainer *t, adcgs_error *error)
     return status;
 }
 
-/** Go on with the model before. */
+/** Continues the model of the previous segment. */
 static adcgs_status follow(adcgs_trainer *t, const adcgs_model *before, adcgs_error *error)
 {
     t->config.params = before->params;
@@ -103,9 +103,9 @@ static adcgs_status follow(adcgs_trainer *t, const adcgs_model *before, adcgs_er
 }
 
 /**
- * Where few of the cameras see a moment, it learns from its neighbours what it does not show. Where most do moments speak for
- * themselves, and a spline would blur what is sudden. All parts of a scene are as the whole
- * is. Nor has a preset a spline that is without one.
+ * Uses a spline over time where each frame is seen by less than half of the cameras. The spline supplies content that a frame
+ * does not show from adjacent frames. Where most cameras see each frame, the frames suffice, and a spline would blur sudden
+ * changes. All parts of a scene have the choice of the whole scene. A preset without a spline stays without.
  */
 static adcgs_status choose_smooth_time(adcgs_params *params, const adcgs_scene *scene, adcgs_error *error)
 {
@@ -138,8 +138,8 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
     else if (!c->own_smooth)
         ADCGS_TRY(choose_smooth_time(&c->params, t->scene, error));
     /*
-     * A camera alone finds what moves with large primitives first, and by what neighbours do; squares make it learn by heart the
-     * moments that it cannot explain. Several tell from one moment.
+     * A single camera finds motion first by large primitives and by the motion of neighbours. Squared errors make it overfit
+     * frames that it cannot explain. With several cameras, one frame suffices.
      */
     const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
     if (several && !c->own_rigid)
@@ -167,7 +167,10 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
     ADCGS_TRY(adcgs_raster_back_create(&t->back, t->cpu, t->pool, error));
     ADCGS_TRY(adcgs_loss_create(&t->loss, t->cpu, t->pool, error));
     ADCGS_TRY(create_views(t, error));
-    /* Points of its own say that a scene is filmed from within: where cameras stand is free, whatever others see behind. */
+    /*
+     * A scene with its own points is recorded from within: the space around cameras is empty, even if other cameras see something
+     * behind it.
+     */
     if (several && t->scene->points.n >= ADCGS_POINTS_LEAST)
         ADCGS_TRY(create_viewpoints(t, error));
     t->decisions.points = t->scene->points.n + (uint64_t)t->stereo.n_still + t->stereo.n_moving;
@@ -182,7 +185,7 @@ adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene,
     return adcgs_trainer_create_after(out, scene, config, NULL, cpu, pool, error);
 }
 
-/** matched: taken over; NULL: images are matched here. */
+/** matched: its content is moved; NULL: images are matched here. */
 static adcgs_status create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                            const adcgs_model *before, adcgs_stereo *matched, adcgs_cpu_level cpu, adcgs_pool *pool,
                            adcgs_error *error)

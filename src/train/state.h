@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The state of a run: all that the stages of training work on. Each stage has a header of its own; stages.c alone calls them.
+ * The state of a run, on which all stages of training work. Each stage has its own header; only stages.c calls them.
  */
 #ifndef ADCGS_TRAIN_STATE_H
 #define ADCGS_TRAIN_STATE_H
@@ -38,30 +38,30 @@ typedef struct adcgs_train_stats {
     float *opacity;
     float *presence;     /* of each anchor, [groups][64] */
     float *in_view;      /* likewise, in views whose image contains one of its primitives */
-    uint32_t n;          /* looks summed */
+    uint32_t n;          /* number of view passes */
 } adcgs_train_stats;
 
-/** Where they lie, one behind the other, and how many numbers they are. */
+/** Total size of the arrays, which are consecutive. */
 size_t adcgs_train_stats_size(const adcgs_fmodel *f);
 adcgs_train_stats adcgs_train_stats_at(float *numbers, const adcgs_fmodel *f);
 
-/** What a look says beside gradients and statistics. */
+/** Results of a view pass in addition to gradients and statistics. */
 typedef struct adcgs_seen {
     double loss, mse;
-    double bits[ADCGS_GROUPS]; /* 0 where they have no price */
-    adcgs_exposure_sums sums;  /* 0 where exposure is not followed */
+    double bits[ADCGS_GROUPS]; /* 0 if rate is not in the loss */
+    adcgs_exposure_sums sums;  /* 0 if exposure is not updated */
 } adcgs_seen;
 
-/** Of the looks of an iteration; see batch.h. */
+/** View passes of an iteration; see batch.h. */
 typedef struct adcgs_train_batch {
     adcgs_seen *seen;               /* [config.batch] */
-    float *sum[ADCGS_TREE_PARTS];   /* [size] gradients and statistics, where there are several looks */
+    float *sum[ADCGS_TREE_PARTS];   /* [size] gradients and statistics, if there are several passes */
     size_t size;
-    float *means;                   /* of the pass, as they were before */
-    float *room;                    /* for what comes from a team */
+    float *means;                   /* means of the pass before the iteration */
+    float *room;                    /* receive buffer for a team */
 } adcgs_train_batch;
 
-/** Sums and means have another size now. */
+/** Frees the sums and means after a change of their size. */
 void adcgs_train_batch_forget(adcgs_train_batch *batch);
 
 typedef struct adcgs_trainer {
@@ -84,76 +84,76 @@ typedef struct adcgs_trainer {
     uint32_t n_views;
     adcgs_train_view *views;
     adcgs_pictures *pictures; /* of the training views */
-    int divide;              /* of the views loaded; 0: none */
-    uint64_t picture_memory; /* bytes of them at most; 0: half of the machine's */
-    adcgs_pictures_progress loading; /* told of pictures loaded, or NULL */
+    int divide;              /* of the loaded views; 0: none */
+    uint64_t picture_memory; /* maximum bytes of them; 0: half of the machine's memory */
+    adcgs_pictures_progress loading; /* called for each loaded image, or NULL */
     void *loading_user;
-    adcgs_glance *glances;   /* [n_views] taken of pictures that are loaded, whoever asks keeps them; NULL: nobody does */
-    adcgs_fault doubled;     /* pictures that come twice, where they were looked for */
+    adcgs_glance *glances;   /* [n_views] of loaded images, owned by the caller; NULL: not wanted */
+    adcgs_fault doubled;     /* duplicated images, if they were searched */
     float *image, *grad;
-    float *taken;            /* the view's picture in use */
+    float *taken;            /* recorded image of the current view */
     adcgs_train_stats stats;
     adcgs_train_batch batch;
     adcgs_weight_average average;
-    adcgs_train_quantise quantise; /* provided by the room that builds streams; NULL: values stay as they are */
-    adcgs_train_measure measure;   /* likewise; asked where there is a size to meet */
+    adcgs_train_quantise quantise; /* provided by the code that builds streams; NULL: values stay unquantised */
+    adcgs_train_measure measure;   /* likewise; used if there is a target size */
     void *measure_user;
-    const adcgs_team *team;        /* with whom the run is shared; NULL: with nobody */
-    int until_lambda;        /* stop before the first iteration that lambda has a say in */
-    /* State that a checkpoint carries beside the model. */
+    const adcgs_team *team;        /* runs that share the work; NULL: none */
+    int until_lambda;        /* 1: stop before the first iteration that lambda affects */
+    /* State in checkpoints in addition to the model. */
     uint32_t iteration;
-    uint8_t lambda_used;     /* lambda has had a say: the run is bound to it */
+    uint8_t lambda_used;     /* 1: lambda has affected the run and must not change */
     uint8_t rested, weighed, slimmed, decided, tiered, rounding, frozen;
-    uint8_t released; /* times that it was asked which settled anchors should learn */
-    uint8_t before[16]; /* digest of the model that this one goes on with; 0 without one */
+    uint8_t released; /* number of times that anchors were tested for unfreezing */
+    uint8_t before[16]; /* digest of the previous segment's model; 0 without one */
     float lr_scale;
-    double contrast; /* of the pictures that training began with; 0: not known yet */
-    double lambda; /* of the rate; the configuration's unless a target steers it, or contrast */
+    double contrast; /* of the initial training images; 0: unknown */
+    double lambda; /* of the rate; the configuration's, scaled by contrast or controlled by a target */
     adcgs_rate_control rate_control;
     uint32_t rollbacks;
     int diverged;            /* the run ended after too many rollbacks */
     double mean_loss, mean_mse;
-    double least_mse; /* the least that mean_mse has been; 0 before the first iteration */
-    adcgs_time elapsed; /* of all programs that have had a part in the run */
+    double least_mse; /* minimum of mean_mse; 0 before the first iteration */
+    adcgs_time elapsed; /* of all programs that took part in the run */
     double mean_bits[ADCGS_GROUPS];
     adcgs_decisions decisions;
-    char trials[ADCGS_TRIALS_TEXT]; /* figures of the trials before the run, for its stream to carry; "" without trials */
-    /* No checkpoint has these. */
-    adcgs_time started;      /* from which this program's time counts; clock 0: when the run begins, or goes on */
+    char trials[ADCGS_TRIALS_TEXT]; /* results of trials before the run, for the stream; "" without trials */
+    /* State that is not in checkpoints. */
+    adcgs_time started;      /* start of this program's time; clock 0: when the run begins or continues */
     adcgs_time_left left;
-    uint8_t content[16];     /* of the training pictures' files; see adcgs_scene_content() */
-    int has_content;         /* it is known: they are read when a file needs it, once */
+    uint8_t content[16];     /* of the training images' files; see adcgs_scene_content() */
+    int has_content;         /* 1: known; computed once, when a file needs it */
     adcgs_buffer snapshot;
     uint32_t snapshot_at;    /* its iteration */
-    int torn;                /* the state is being changed in several steps: only the snapshot is whole */
-    adcgs_buffer begin;      /* a checkpoint has it: the run where rate began, while it may go back there; see rate_search.h */
+    int torn;                /* 1: the state is between two steps of a change; only the snapshot is consistent */
+    adcgs_buffer begin;      /* in checkpoints, too: state at rate_from, while the run may return; see rate_search.h */
 } adcgs_trainer;
 
 /** ADCGS_ERR_USAGE for a configuration that does not pass adcgs_train_check(). */
 adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                   adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
 /**
- * The same for a part of a scene whose model goes on with that of the part before, as a predicted segment will. before has the
- * times of its part, in seconds of the scene; it has not to outlive the call. NULL: there is none.
+ * The same for a part of a scene whose model continues that of the previous part, for a predicted segment. before: has the times
+ * of its part in seconds of the scene; may be freed after the call. NULL: none.
  */
 adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                         const adcgs_model *before, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
-/** The same with the matching result of another run over the scene. It is taken over, and may be taken back: trainer->stereo. */
+/** The same with the matching result of another run over the scene. It is moved to trainer->stereo and may be moved back. */
 adcgs_status adcgs_trainer_create_matched(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                           adcgs_stereo *matched, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
 void adcgs_trainer_free(adcgs_trainer **trainer);
-/** Forget the pictures that are loaded, and the room to draw them. */
+/** Frees the loaded images and the image buffers. */
 void adcgs_views_unload(adcgs_trainer *trainer);
-/** After the anchors changed: workspace and statistics. */
+/** After a change of the anchors: reallocates workspace and statistics. */
 adcgs_status adcgs_trainer_resize(adcgs_trainer *trainer, adcgs_error *error);
-/** Derive from the networks' parameters what passes use, rounded to the weights' steps once weights are. */
+/** Derives the form of the networks' parameters that passes use, rounded to the weight steps once weights are rounded. */
 void adcgs_trainer_prepare_networks(adcgs_trainer *trainer);
-/** A time of the scene in the model's, [0,1]. */
+/** Converts a time of the scene to the model's time, [0,1]. */
 float adcgs_trainer_time(const adcgs_trainer *trainer, double seconds);
-/** How far the run is, in [0,1]. */
+/** Progress of the run, in [0,1]. */
 double adcgs_trainer_progress(const adcgs_trainer *trainer);
 
-/** What a bit costs in terms of the loss: lambda is the price of a mebibyte. */
+/** Loss per bit: lambda is the loss per mebibyte. */
 static inline double adcgs_price_of_bit(const adcgs_trainer *t)
 {
     return t->lambda * 0x1p-23;

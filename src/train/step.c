@@ -34,8 +34,8 @@ static void adam_piece(void *arg, int i, int thread)
 }
 
 /**
- * Loss per bit of a network's weights. They cost nothing until networks have found their form: what begins near 0 could not
- * leave it. The weights of all iterations are coded once. A run that has landed on a size keeps what networks take of it.
+ * Loss per bit of a network's weights. It is 0 until networks have taken shape, because weights near 0 could not grow. The
+ * weights are coded once for the whole run. After a run has met a size, the networks keep their share of it.
  */
 static float weight_price(const adcgs_trainer *t, double progress)
 {
@@ -45,8 +45,8 @@ static float weight_price(const adcgs_trainer *t, double progress)
 }
 
 /**
- * Values that are not coded, since all that is coded of their channel is the mean, go with the mean. Nothing else holds them,
- * and should bits be spent on the channel again, they would be far from where any are.
+ * Moves uncoded values with the mean: if only the mean of a channel is coded, nothing else holds its values. If bits are spent on
+ * the channel again later, they would start far from the mean.
  */
 static void follow_means(adcgs_trainer *t)
 {
@@ -59,7 +59,7 @@ static void follow_means(adcgs_trainer *t)
     }
 }
 
-/** What is settled has no gradient, and without one stays what it is. */
+/** Frozen anchors have zero gradient, so the optimiser leaves them unchanged. */
 static void hold_settled(adcgs_fmodel *f, int group)
 {
     const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
@@ -70,9 +70,9 @@ static void hold_settled(adcgs_fmodel *f, int group)
 }
 
 /**
- * Whether a group takes part: one of motion does from the first gradient that it has. Its moments begin then, and are scaled by
- * the steps since; by those of the run, the first steps would be many times too long, and in a long run blow the scene apart.
- * Entropy networks begin late as well, but gain by long first steps: bits fall sooner.
+ * True if a group is optimised. Motion groups start with their first nonzero gradient. Their Adam moments start then and are
+ * corrected by the steps since. Corrected by the run's iterations, the first steps would be many times too long and could destroy
+ * the scene in a long run. Entropy networks also start late, but profit from long first steps: bits fall sooner.
  */
 static int begins(const adcgs_param *p, int group)
 {
@@ -113,7 +113,7 @@ static void update(adcgs_trainer *t, double progress)
     adcgs_trainer_prepare_networks(t);
 }
 
-/** Whether an iteration is one of the last before values are frozen, or before the end. */
+/** True if an iteration is one of the last before values are frozen, or before the end. */
 static int averages(const adcgs_trainer *t, double progress)
 {
     const adcgs_train_config *c = &t->config;
@@ -122,7 +122,7 @@ static int averages(const adcgs_trainer *t, double progress)
     return progress >= end - fmin((double)c->average_last, (end - begin) / 2);
 }
 
-/** Running means of what the looks have said: in the beginning of few iterations, then of many. */
+/** Updates running means of the view passes' results, over few iterations at first, over many later. */
 static void note_means(adcgs_trainer *t, int rated)
 {
     const double keep = !t->iteration ? 0 : t->iteration < 100 ? 0.9 : 0.99;

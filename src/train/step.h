@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file One iteration: its looks at views, and Adam's step (Kingma and Ba, 2015) by the mean of their gradients. */
+/** \file One iteration: its view passes, and an Adam step (Kingma and Ba, 2015) with the mean of their gradients. */
 #ifndef ADCGS_TRAIN_STEP_H
 #define ADCGS_TRAIN_STEP_H
 

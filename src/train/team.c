@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Runs that learn the same model together. */
+/** \file Runs that train the same model together. */
 #include "train/team.h"
 
 #include "train/tree_sum.h"

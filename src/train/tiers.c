@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Tiers. */
+/** \file Assignment of anchors to tiers. */
 #include "train/tiers.h"
 
 #include "fmodel/bodies.h"
@@ -11,16 +11,21 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* LEAST: anchors of the first tier. PROBES: random signs per view that a square is measured with. */
-enum { VIEWS = 16, PIXELS = 1 << 16, PROBES = 2, LEAST = 64, LEARN_EVERY = 2 };
-#define SHARE 0.4   /* of the anchors that are left, those of the tiers before the last of them */
-#define ROUND 0.75  /* of the anchors that are left, those that a round leaves at least */
+enum {
+    VIEWS = 16,       /* maximum number of views measured */
+    PIXELS = 1 << 16, /* maximum pixels of each */
+    PROBES = 2,       /* random sign vectors per view for the estimate of squares */
+    LEAST = 64,       /* minimum anchors of the first tier */
+    LEARN_EVERY = 2   /* one of so many iterations also trains without the later tiers */
+};
+#define SHARE 0.4   /* of the remaining anchors: share that stays in the earlier tiers */
+#define ROUND 0.75  /* of the remaining anchors: minimum share that a round keeps */
 
-/** A view that the picture is looked at from, and what it is when nothing is absent. */
+/** A view for measuring the effect of tiers, and its render with all tiers. */
 typedef struct lookout {
     adcgs_view view;
     float t;
-    size_t values; /**< of its picture */
+    size_t values; /**< of its image */
     float *whole;
 } lookout;
 
@@ -33,7 +38,7 @@ typedef struct survey {
     adcgs_ranked *rank;
 } survey;
 
-/** Draw what is there while only so many tiers are, at least one. */
+/** Restricts the primitives to the first tiers, at least one. */
 static void show(const adcgs_trainer *t, int tiers)
 {
     const adcgs_fmodel *f = t->f;
@@ -56,7 +61,7 @@ static adcgs_status draw(const survey *s, const lookout *l, int tiers, float *im
     return adcgs_view_draw(s->t, &l->view, ADCGS_MEAN_LIGHT, image, keep, error);
 }
 
-/** A training view, made smaller by a whole number if it is large. */
+/** Sets a training view, reduced by an integer if it is large. */
 static void look_from(lookout *l, const adcgs_train_view *v)
 {
     int divide = 1;
@@ -106,7 +111,7 @@ static adcgs_status survey_begin(survey *s, adcgs_trainer *t, adcgs_error *error
     return ADCGS_OK;
 }
 
-/** Mean square of what is wrong with the pictures of so many tiers. */
+/** Mean squared error of the renders with only these tiers. */
 static adcgs_status measure(const survey *s, int tiers, double *wrong, adcgs_error *error)
 {
     *wrong = 0;
@@ -121,7 +126,7 @@ static adcgs_status measure(const survey *s, int tiers, double *wrong, adcgs_err
     return ADCGS_OK;
 }
 
-/** The growth that is best, among those that are at most `reach` from what it is. */
+/** Finds the best growth among values within `reach` of the current one. */
 static adcgs_status fit(const survey *s, int tiers, int reach, adcgs_error *error)
 {
     uint8_t *growth = &s->t->f->growth[tiers - 1], best = *growth;
@@ -137,7 +142,7 @@ static adcgs_status fit(const survey *s, int tiers, int reach, adcgs_error *erro
     return ADCGS_OK;
 }
 
-/** For each anchor the sum, over its primitives, of the gradient of t->image times t->grad by opacity, times opacity. */
+/** Sum over each anchor's primitives of opacity times the gradient of (t->image . t->grad) with respect to opacity. */
 static adcgs_status change_of_anchors(survey *s, const lookout *l, adcgs_error *error)
 {
     adcgs_trainer *t = s->t;
@@ -152,8 +157,8 @@ static adcgs_status change_of_anchors(survey *s, const lookout *l, adcgs_error *
 }
 
 /**
- * What pictures gain by each anchor, in squares. Without it a pixel changes by d, to first order, and its error by
- * d^2 - 2 d error; the sum of squares is that of a product with random signs, in the mean.
+ * Gain of the renders from each anchor, in squared error. Without the anchor a pixel changes by d, to first order, and its
+ * squared error by d^2 - 2 d error. The sum of squares is estimated by products with random signs.
  */
 static adcgs_status weigh(survey *s, int tiers, uint32_t round, adcgs_error *error)
 {
@@ -174,7 +179,7 @@ static adcgs_status weigh(survey *s, int tiers, uint32_t round, adcgs_error *err
     return ADCGS_OK;
 }
 
-/** Of the anchors of the first tiers, those that are worth least go to the next, until so many are left. */
+/** Moves the least valuable anchors of the first tiers to the next tier, until the wanted number is left. */
 static void demote(survey *s, int tiers, uint32_t *left, uint32_t want)
 {
     adcgs_fmodel *f = s->t->f;
@@ -254,7 +259,7 @@ adcgs_status adcgs_tiers_learn(adcgs_trainer *t, uint32_t view, const adcgs_pass
     ADCGS_TRY(adcgs_view_draw_back(t, v, view, &grads, error));
     const float weight = t->config.tier_weight, factor = weight * adcgs_step_factor(f->growth[tiers - 1]);
     const size_t n = t->pass->primitives.n;
-    for (size_t i = 0; i < ADCGS_ROWS * n; i++) /* scales were multiplied on their way */
+    for (size_t i = 0; i < ADCGS_ROWS * n; i++) /* scales were multiplied by the growth in show() */
         t->pass->grad[i] *= i >= ADCGS_ROW_SCALE * n && i < ADCGS_ROW_ROTATION * n ? factor : weight;
     t->pass->pull = NULL;
     adcgs_pass_backward(t->pass, t->f, mode->deform, 0, t->config.rate_period, 0, NULL);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The part of time that is trained on. */
+/** \file Curriculum over time. */
 #include "train/time_curriculum.h"
 
 #include "grad/random.h"
@@ -45,10 +45,10 @@ static void copy_row(adcgs_fmodel *f, int to, int from)
 {
     const size_t width = f->params.time_width, columns = (size_t)adcgs_fmodel_time_columns(&f->params);
     float *z = f->param[ADCGS_P_TIME].p;
-    memcpy(z + (size_t)to * columns, z + (size_t)from * columns, width * sizeof *z); /* poses are known, or stand still */
+    memcpy(z + (size_t)to * columns, z + (size_t)from * columns, width * sizeof *z); /* poses are known or constant */
 }
 
-/** Bodies go on from two rows before as they went, unless their poses are known. */
+/** Extrapolates the poses of bodies linearly from the two previous rows, unless they are known. */
 static void go_on(adcgs_fmodel *f, int to, unsigned known)
 {
     const size_t columns = (size_t)adcgs_fmodel_time_columns(&f->params);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How long a run still takes. */
+/** \file Remaining time of a run. */
 #include "train/time_left.h"
 
 #include <math.h>
 
-#define KEEP 0.98    /* of what an iteration cost before, when one more is known */
-#define OVERHEAD 0.2 /* of an iteration at full resolution, that does not depend on its pixels; until two have been seen */
+#define KEEP 0.98    /* decay of the running mean of an iteration's cost */
+#define OVERHEAD 0.2 /* share of an iteration at full resolution that is independent of pixels; until two levels are measured */
 
 int adcgs_coarse_divide(const adcgs_train_config *c, double progress)
 {
@@ -17,7 +17,7 @@ static int level_of(int divide)
     return divide >= 4 ? 2 : divide >= 2;
 }
 
-/** Of all pixels. */
+/** Share of the pixels. */
 static double share_of(int level)
 {
     return 1.0 / (double)(1 << 2 * level);
@@ -29,7 +29,7 @@ void adcgs_time_left_add(adcgs_time_left *left, int divide, double seconds)
     *cost = *cost > 0 ? KEEP * *cost + (1 - KEEP) * seconds : seconds;
 }
 
-/** Cost of a level that has not been seen: on the line through two that have, or through one and the usual overhead. */
+/** Expected cost of an unmeasured level: on the line through two measured levels, or through one and the default overhead. */
 static double expect(const adcgs_time_left *left, int level)
 {
     int seen[ADCGS_TIME_LEFT_LEVELS], n = 0;
@@ -43,11 +43,11 @@ static double expect(const adcgs_time_left *left, int level)
     if (n < 2)
         return usual;
     const double slope = (y0 - left->cost[seen[1]]) / (x0 - share_of(seen[1])), there = y0 + slope * (x - x0);
-    /* More pixels never cost less, nor more than in proportion. */
+    /* More pixels cost at least as much, and at most in proportion. */
     return x > x0 ? fmin(fmax(there, y0), y0 * x / x0) : fmax(fmin(there, y0), y0 * x / x0);
 }
 
-/** Iterations of the run that begin before a fraction of it. */
+/** Number of iterations that begin before a fraction of the run. */
 static double count_until(const adcgs_train_config *c, double fraction)
 {
     return ceil(fmin(fmax(fraction, 0), 1) * c->iterations);
@@ -66,6 +66,6 @@ double adcgs_time_left_of(const adcgs_time_left *left, const adcgs_train_config 
         at = ends[level];
     }
     if (c->time_limit > 0)
-        seconds = fmin(seconds, fmax(c->time_limit - elapsed, 0)); /* also where seconds is not known */
+        seconds = fmin(seconds, fmax(c->time_limit - elapsed, 0)); /* also if seconds is NaN */
     return seconds;
 }

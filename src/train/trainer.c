@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The training loop: stages, steps, reports, and the way back when a step goes wrong. */
+/** \file The training loop: stages, steps, reports, and rollback. */
 #include "train/trainer.h"
 
 #include "base/digest.h"
@@ -11,13 +11,12 @@
 #include <math.h>
 
 enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, AGREE_EVERY = 100, ROLLBACKS_MAX = 4, MEANS_AFTER = 100 };
-/*
- * LOST_BY: times the pictures' deviation, by which one colour for all of them is off. LOST_LEAST: of that deviation, since
- * pictures of one colour have none. BLOWN_BY: times the least error that there was.
- */
-static const double LOST_BY = 2, LOST_LEAST = 0.1, BLOWN_BY = 4;
+static const double
+    LOST_BY = 2,      /* ratio of the RMS error to the images' standard deviation, which is the error of one colour for all */
+    LOST_LEAST = 0.1, /* minimum of that deviation, since images of one colour have none */
+    BLOWN_BY = 4;     /* ratio of the squared error to its minimum so far */
 
-/** Whether every parameter is a number. A splat that is none vanishes from the pictures, so the loss alone may not tell. */
+/** True if every parameter is finite. A splat with a NaN vanishes from the renders, so the loss alone does not reveal it. */
 static int is_finite(const adcgs_trainer *t)
 {
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
@@ -31,7 +30,7 @@ static int is_finite(const adcgs_trainer *t)
     return 1;
 }
 
-/** What a run is in a few bytes: whether all of a team are at the same. */
+/** Checksum of the model, to compare the runs of a team. */
 static uint32_t sum_up(const adcgs_trainer *t)
 {
     uint32_t crc = adcgs_crc32c(t->iteration, &t->f->n, sizeof t->f->n);
@@ -40,7 +39,7 @@ static uint32_t sum_up(const adcgs_trainer *t)
     return crc;
 }
 
-/** Nobody is sent parameters: a run that computes otherwise would spoil what all learn. */
+/** Compares the runs of a team. Parameters are not sent, so a run that computes differently would spoil the training of all. */
 static adcgs_status agree(adcgs_trainer *t, adcgs_error *error)
 {
     uint32_t sums[ADCGS_TREE_MOST];
@@ -50,9 +49,9 @@ static adcgs_status agree(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(adcgs_team_gather_each(t->team, sums, sizeof *sums, error));
     for (int r = 1; r < t->team->size; r++)
         if (sums[r] != sums[0]) {
-            t->torn = 1; /* nobody knows whose state is right */
-            return adcgs_fail(error, ADCGS_ERR_DATA, "at iteration %u number %d of the %d that learn together has another model "
-                              "than the first: expected the same programs, libraries, pictures and checkpoints", t->iteration,
+            t->torn = 1; /* it is unknown whose state is right */
+            return adcgs_fail(error, ADCGS_ERR_DATA, "at iteration %u run %d of the %d that train together has a different model "
+                              "from the first: expected the same programs, libraries, images and checkpoints", t->iteration,
                               r + 1, t->team->size);
         }
     return ADCGS_OK;
@@ -72,19 +71,19 @@ int adcgs_trainer_is_lost(const adcgs_trainer *t)
 }
 
 /**
- * Whether steps were too long: pictures that were learnt are lost. Where nothing is drawn any more there are no gradients, and
- * no way back but to an earlier state. In the beginning the means are of few pictures, which says little.
+ * True if steps were too long and the trained images are lost. Without visible primitives there are no gradients, so only an
+ * earlier state helps. At the start the means cover too few images.
  */
 static int is_blown(const adcgs_trainer *t)
 {
     return t->iteration >= MEANS_AFTER && t->mean_mse > BLOWN_BY * t->least_mse && adcgs_trainer_is_lost(t);
 }
 
-/** NaN, infinity, or a loss far above what it was: go back to the last good state with smaller steps. */
+/** After NaN, infinity or a sharp rise of the loss: restores the last good state and halves the steps. */
 static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
 {
     const double progress = adcgs_trainer_progress(t);
-    /* Also before what follows from the parameters is fixed: at the end, and when the stage changes. */
+    /* Also before values derived from the parameters are fixed: at the end, and at a change of stage. */
     const int due = t->iteration % CHECK_EVERY == 0 || progress >= 1 ||
                     adcgs_train_stage(&t->config, progress) != adcgs_train_stage(&t->config, before);
     if (isfinite(t->mean_loss) && t->mean_loss <= 4 && !is_blown(t) && (!due || is_finite(t)))
@@ -99,7 +98,7 @@ static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
                           t->iteration, t->mean_loss, t->rollbacks);
     ADCGS_TRY(adcgs_trainer_restore(t, t->snapshot.data, t->snapshot.size, error));
     if (!t->iteration)
-        t->divide = 0; /* what the pictures tell in the beginning, contrast and black levels, is asked anew */
+        t->divide = 0; /* contrast and black levels are measured again */
     t->rollbacks = rollbacks;
     t->lr_scale = lr;
     return ADCGS_OK;
@@ -125,7 +124,7 @@ static void fill_report(const adcgs_trainer *t, double progress, double rate, ad
     r->attempt = t->begin.size && adcgs_rate_is_sought(t) ? (int)t->rate_control.tries + 1 : 0;
 }
 
-/** When this program began, were all that the run has taken its own. */
+/** Start of this program, moved back by the time that the run has already taken. */
 static adcgs_time begin_of(const adcgs_trainer *t)
 {
     return adcgs_time_less(fabs(t->started.clock) > 0 ? t->started : adcgs_time_now(), t->elapsed);
@@ -135,10 +134,10 @@ adcgs_status adcgs_trainer_finish(adcgs_trainer *t, adcgs_train_report *report, 
 {
     const adcgs_time begin = begin_of(t);
     if (!t->iteration)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "nothing to make a file of: the run is before its first iteration");
+        return adcgs_fail(error, ADCGS_ERR_DATA, "no file to write: the run is before its first iteration");
     if (!is_finite(t))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "nothing to make a file of: training has diverged at iteration %u, from where a "
-                          "run that goes on goes back", t->iteration);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "no file to write: training has diverged at iteration %u; continue the run, "
+                          "which then rolls back", t->iteration);
     adcgs_trainer_prepare_networks(t);
     ADCGS_TRY(adcgs_stages_skip(t, error));
     ADCGS_TRY(adcgs_stages_finish(t, error));
@@ -153,7 +152,7 @@ int adcgs_trainer_moves(const adcgs_trainer *t)
            (t->config.without_coarse && t->config.without_fine) || adcgs_trainer_progress(t) >= (double)t->config.deform_from;
 }
 
-/** How much time the run has taken. Where that is limited it is the first's of a team: progress has to be the same. */
+/** Updates the elapsed time. With a time limit all runs of a team use the time of rank 0, so that progress is the same. */
 static adcgs_status take_time(adcgs_trainer *t, adcgs_time begin, adcgs_error *error)
 {
     t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
@@ -163,11 +162,11 @@ static adcgs_status take_time(adcgs_trainer *t, adcgs_time begin, adcgs_error *e
 typedef struct reports {
     adcgs_train_observe observe;
     void *user;
-    double last, rate; /* when, and iterations per second */
+    double last, rate; /* time of the last report, and iterations per second */
     uint32_t iteration;
 } reports;
 
-/** \return *stops: the first of a team says so for all */
+/** Reports progress. *stops: rank 0 decides for all. */
 static adcgs_status tell(const adcgs_trainer *t, reports *r, double progress, int *stops, adcgs_error *error)
 {
     const double at = adcgs_seconds();
@@ -181,7 +180,7 @@ static adcgs_status tell(const adcgs_trainer *t, reports *r, double progress, in
     return adcgs_team_tell(t->team, stops, sizeof *stops, error);
 }
 
-/** The end must not be applied twice: should it, or writing its result, fail, the state before it is saved. */
+/** Finishes the run. The end must not be applied twice: if it, or writing its result, fails, the state before it is saved. */
 static adcgs_status end(adcgs_trainer *t, adcgs_error *error)
 {
     ADCGS_TRY(take_snapshot(t, error));
@@ -202,8 +201,8 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         ADCGS_TRY(take_time(t, begin, error));
         const double progress = adcgs_trainer_progress(t);
         if (progress >= 1 && !t->iteration)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "the time limit of %g s was over after %.1f s, before training began: "
-                              "reading the scene takes a part of it", t->config.time_limit, t->elapsed.clock);
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "the time limit of %g s ended after %.1f s, before training began: "
+                              "it includes reading the scene", t->config.time_limit, t->elapsed.clock);
         if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
             int stops;
             ADCGS_TRY(tell(t, &r, progress, &stops, error));
@@ -221,11 +220,11 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         const uint32_t at = t->iteration;
         ADCGS_TRY(adcgs_stages_before(t, progress, error));
         ADCGS_TRY(take_time(t, begin, error));
-        if (t->iteration != at) { /* it goes on from an earlier one, which is the last good state now */
+        if (t->iteration != at) { /* it continues from an earlier state, which is now the last good one */
             ADCGS_TRY(take_snapshot(t, error));
             continue;
         }
-        if (adcgs_trainer_progress(t) >= 1) /* pictures were loaded, anchors changed, until the time was over */
+        if (adcgs_trainer_progress(t) >= 1) /* loading images or changing anchors used up the time */
             continue;
         ADCGS_TRY(adcgs_train_step(t, progress, error));
         adcgs_time_left_add(&t->left, t->divide / t->config.scale, adcgs_seconds() - begin.clock - t->elapsed.clock);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Training: one loop over posed pictures. The same seed gives the same model at
- * any thread count, by vector kernels of any level; scalar ones round otherwise
- * and give another. A run can stop, and continue exactly from there.
+ * Training: one loop over posed images. The same seed gives the same model for any number of threads and any level of vector
+ * kernels; scalar kernels round differently and give another model. A run can stop, and continue exactly from there.
  */
 #ifndef ADCGS_TRAIN_TRAINER_H
 #define ADCGS_TRAIN_TRAINER_H
@@ -10,38 +9,38 @@
 #include "train/checkpoint.h"
 #include "train/state.h"
 
-/** What an observer is told. Bits are estimates until the stream is written. */
+/** Report to an observer. Bits are estimates until the stream is written. */
 typedef struct adcgs_train_report {
     const char *stage;
     uint32_t iteration, iterations;
     uint32_t anchors;
-    int divide;             /**< resolution in use, at the start the one to come: images are divided by this */
+    int divide;             /**< factor of image reduction in use; at the start, the next one */
     double loss, psnr;      /**< running means over training views; none at iteration 0 */
     double bytes;           /**< estimated bytes of the features; 0 before rate is measured */
-    double stream[ADCGS_GROUPS]; /**< the same of eta, f_v, Sigma_v, C_v (layer 0, but for its flags) and the chunks of f_g */
+    double stream[ADCGS_GROUPS]; /**< the same for eta, f_v, Sigma_v, C_v (layer 0 without its flags) and the chunks of f_g */
     double lambda;
     adcgs_time spent;       /**< since the start */
-    double rate;            /**< iterations per second lately */
-    double left;            /**< seconds, estimated; not a number before an iteration has been seen */
+    double rate;            /**< recent iterations per second */
+    double left;            /**< estimated seconds; NaN before the first iteration */
     int rollbacks;
-    int attempt;            /**< at the lambda of a size or a quality, while that is sought: from 1 on; else 0 */
+    int attempt;            /**< try of the rate search, from 1; 0 outside the search */
 } adcgs_train_report;
 
-/** Called often; return nonzero to stop training (a checkpoint can then be saved). */
+/** Called often; returns nonzero to stop training (a checkpoint can then be saved). */
 typedef int (*adcgs_train_observe)(void *user, const adcgs_train_report *report);
 
-/** Whether training views are drawn so badly that one colour for all of them would be much better: something went wrong. */
+/** True if training views are rendered so badly that one colour for all would be much better: something went wrong. */
 int adcgs_trainer_is_lost(const adcgs_trainer *trainer);
 
-/** Whether the run is past the stage in which its model is trained without motion; one without motion always is. */
+/** True if the run is past the stage that trains its model without motion; always true for a run without motion. */
 int adcgs_trainer_moves(const adcgs_trainer *trainer);
 
-/** Train to the end, or (*stopped = 1) until observe says stop or lambda would have a say. */
+/** Trains to the end, or (*stopped = 1) until observe returns nonzero or before the first iteration that lambda affects. */
 adcgs_status adcgs_trainer_run(adcgs_trainer *trainer, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error);
 
 /**
- * Be done with a run that has been loaded or stopped, without an iteration more: what its end would have done that can be done
- * now is. ADCGS_ERR_DATA before the first iteration.
+ * Finishes a loaded or stopped run without further iterations: applies the steps of the end that are possible now. ADCGS_ERR_DATA
+ * before the first iteration.
  */
 adcgs_status adcgs_trainer_finish(adcgs_trainer *trainer, adcgs_train_report *report, adcgs_error *error);
 

@@ -8,7 +8,7 @@ static void add(float *restrict to, const float *restrict from, size_t size)
         to[i] += from[i];
 }
 
-/** Of two that are as long as each other, the first has a second half where it begins at a multiple of both. */
+/** True if two parts of equal length are the halves of a tree node: the first begins at a multiple of their sum. */
 static int are_halves(const adcgs_tree_part *a, const adcgs_tree_part *b)
 {
     return a->n == b->n && a->first % (2 * a->n) == 0;

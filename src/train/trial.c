@@ -17,13 +17,16 @@
 
 enum { NONE = -1 }; /* no mechanism is left out */
 enum { ITERATIONS_LEAST = 100, ITERATIONS_MOST = 600, DENSIFICATIONS = 20 };
-/* Pixels of the images of a trial, about: as many as tell a motion of a hundredth of the image. */
+/* Approximate pixels of a trial's images; enough to see a motion of 1/100 of the image. */
 static const double PIXELS = 12000;
-/*
- * LOSS: dB in the mean over the views held back, by which a mechanism loses if it is to be dropped. AGREE: share of these views
- * that say so. Runs that differ in nothing but their seed lie within 0.2 dB on the scenes at hand.
- */
-static const double LOSS = 0.3, AGREE = 0.7;
+static const double
+    /*
+     * dB, mean over the held-out views, by which a mechanism must lose to be dropped. Runs that differ only in their seed lie
+     * within 0.2 dB on the scenes at hand.
+     */
+    LOSS = 0.3,
+    /* Share of the held-out views that must agree. */
+    AGREE = 0.7;
 
 /* ---- Where mechanisms apply ---- */
 
@@ -44,7 +47,7 @@ static int has_retimed(const adcgs_trainer *t)
     return 0;
 }
 
-/** Whether a run with all mechanisms made use of one. */
+/** True if a run with all mechanisms used this one. */
 static int applies(const adcgs_trainer *t, int mechanism)
 {
     switch (mechanism) {
@@ -63,25 +66,25 @@ static int applies(const adcgs_trainer *t, int mechanism)
 
 /* ---- One trial ---- */
 
-/** A trial renders the views held back: PSNR of each. */
+/** PSNR of each held-out view after a trial. */
 typedef struct score {
     double psnr[ADCGS_TRIAL_JUDGES];
     uint8_t applies[ADCGS_MECHANISMS];
-    int fits; /* gains apply: images are compared but for theirs */
+    int fits; /* 1: gains apply, so images are compared after a fit of gains */
 } score;
 
 typedef struct trials {
     const adcgs_trials_options *o;
     const adcgs_train_config *config;
     const adcgs_scene *scene;
-    adcgs_stereo matched; /* by the first run, for the others */
+    adcgs_stereo matched; /* result of the first run, for the others */
     uint32_t details;     /* likewise */
     uint32_t done;
-    score base[2]; /* with all mechanisms, by each seed */
+    score base[2]; /* with all mechanisms, for each seed */
     int has_second;
 } trials;
 
-/** How the images of a view are reduced, and the run with it. */
+/** Reduces the images of a trial: by an integer, and by half for the whole run. */
 static void shrink(adcgs_train_config *c, const adcgs_scene *scene)
 {
     const adcgs_camera *camera = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
@@ -108,7 +111,7 @@ static adcgs_train_config trial_config(const adcgs_train_config *config, const a
     return c;
 }
 
-/** The view as the model has it, its gains and black levels fitted to the image where cameras have any. */
+/** PSNR of a view, after a fit of gain and black level to the image if gains apply. */
 static adcgs_status judge_view(adcgs_trainer *t, const adcgs_scene_view *v, int fits, double *psnr, adcgs_error *error)
 {
     const adcgs_pass_mode mode = { .deform = ADCGS_DEFORM_ALL };
@@ -139,12 +142,12 @@ static adcgs_status judge(adcgs_trainer *t, int fits, score *out, adcgs_error *e
     return ADCGS_OK;
 }
 
-/** first: the run that says which mechanisms apply, and matches for all. */
+/** first: the run that shows which mechanisms apply, and matches images for all. */
 static adcgs_status run_trial(score *out, const adcgs_train_config *config, trials *r, int first, adcgs_error *error)
 {
     adcgs_trainer *t;
     int stopped;
-    /* Without lifetimes or bodies matching finds something else. */
+    /* Matching gives other results without lifetimes or bodies. */
     const int same = config->stereo && config->params.spans == r->config->params.spans &&
                      config->params.bodies == r->config->params.bodies;
     adcgs_stereo *const matched = first || !same ? NULL : &r->matched;
@@ -169,20 +172,20 @@ static adcgs_status run_trial(score *out, const adcgs_train_config *config, tria
     return status;
 }
 
-/* ---- All of them ---- */
+/* ---- All trials ---- */
 
 static uint32_t judges_of(const trials *r)
 {
     return r->scene->n_views[ADCGS_SPLIT_VAL];
 }
 
-/** A run without a mechanism (NONE: with all), by the first seed or the second. */
+/** Runs without a mechanism (NONE: with all), with the first or the second seed. */
 static adcgs_status try_without(trials *r, int mechanism, int second, score *out, adcgs_error *error)
 {
     const char *const name = mechanism == NONE ? NULL : adcgs_mechanism_names[mechanism];
     adcgs_train_config c = trial_config(r->config, r->scene, r->config->seed + (uint64_t)second);
     if (r->o->progress && r->o->progress(r->o->user, name, r->done, ADCGS_MECHANISMS + 1))
-        return adcgs_fail(error, ADCGS_ERR_IO, "interrupted while mechanisms were tried");
+        return adcgs_fail(error, ADCGS_ERR_IO, "interrupted during the trials of mechanisms");
     r->done++;
     if (name)
         ADCGS_TRY(adcgs_train_set_value(&c, adcgs_mechanism_settings[mechanism], 0, error));
@@ -199,7 +202,7 @@ static double mean(const score *s, uint32_t n)
     return sum;
 }
 
-/** Whether a run is clearly better than another, in the mean and in most views. */
+/** True if a run is clearly better than another, on average and in most views. */
 static int is_better(const score *s, const score *than, uint32_t n)
 {
     uint32_t better = 0;
@@ -250,7 +253,7 @@ uint32_t adcgs_trial_length(const adcgs_train_config *config)
     return n < ITERATIONS_LEAST || config->time_limit > 0 ? 0 : (uint32_t)fmin(rint(n), ITERATIONS_MOST);
 }
 
-/** Turn off the mechanisms that were dropped. */
+/** Turns off the mechanisms that were dropped. */
 static adcgs_status apply(const adcgs_trials *out, adcgs_train_config *config, adcgs_error *error)
 {
     for (uint32_t i = 0; i < out->n; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Training views held back from a trial. */
+/** \file Training views held out from a trial. */
 #include "train/trial_scene.h"
 
 #include "data/by_camera.h"
@@ -9,10 +9,14 @@
 
 #include <math.h>
 
-/* CAMERAS_LEAST cameras, of IMAGES_LEAST images in the mean, are held back whole; one in ONE_IN of cameras or of images is. */
-enum { VIEWS_LEAST = 12, CAMERAS_LEAST = 5, IMAGES_LEAST = 4, ONE_IN = 8 };
+enum {
+    VIEWS_LEAST = 12,  /* minimum training views for trials */
+    CAMERAS_LEAST = 5, /* minimum cameras to hold out whole cameras */
+    IMAGES_LEAST = 4,  /* minimum mean images per camera to hold out whole cameras */
+    ONE_IN = 8         /* one camera, or one image, of so many is held out */
+};
 
-/** The stretch of time, about the middle, that has at most ADCGS_TRIAL_VIEWS training views. */
+/** Finds the interval around the middle of time with at most ADCGS_TRIAL_VIEWS training views. */
 static adcgs_status find_stretch(const adcgs_scene *scene, double *begin, double *end, adcgs_error *error)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -32,11 +36,11 @@ static adcgs_status find_stretch(const adcgs_scene *scene, double *begin, double
     return ADCGS_OK;
 }
 
-/** Copies of the training views of a stretch of time, with times from its beginning on. */
+/** Copies the training views of an interval, with times relative to its start. */
 static void take_stretch(adcgs_scene *to, const adcgs_scene *scene, double begin, double end)
 {
     const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN];
-    /* A static scene of many images is thinned: it has no stretch. */
+    /* A static scene with many images has no interval and is thinned instead. */
     const uint32_t step = scene->n_times <= 1 ? (all + ADCGS_TRIAL_VIEWS - 1) / ADCGS_TRIAL_VIEWS : 1;
     uint32_t n = 0;
     for (uint32_t i = 0; i < all; i += step) {
@@ -51,14 +55,14 @@ static void take_stretch(adcgs_scene *to, const adcgs_scene *scene, double begin
     to->duration = end - begin;
 }
 
-/** Whether number i of n is one of the n / ONE_IN that are held back: evenly spread, each in the middle of its neighbours. */
+/** True if number i of n is one of the n / ONE_IN held out: evenly spread, each in the middle of its neighbours. */
 static int is_held(uint32_t i, uint32_t n)
 {
     const uint64_t held = ADCGS_MAX(n / ONE_IN, 1), k = i * held / n;
     return i == (2 * k + 1) * n / (2 * held);
 }
 
-/** Move views that are held back to the other split, and thin them evenly to ADCGS_TRIAL_JUDGES. */
+/** Moves held-out views to the other split, and thins them evenly to ADCGS_TRIAL_JUDGES. */
 static void hold_back(adcgs_scene *s, const uint32_t *of, uint32_t cameras)
 {
     const uint32_t n = s->n_views[ADCGS_SPLIT_TRAIN];
@@ -101,7 +105,7 @@ adcgs_status adcgs_trial_scene_make(adcgs_trial_scene *out, const adcgs_scene *s
     memset(s->n_views, 0, sizeof s->n_views);
     if (n < VIEWS_LEAST)
         return ADCGS_OK;
-    ADCGS_TRY(adcgs_scene_frame(scene, s->origin, &s->scale, error)); /* units do not depend on views held back */
+    ADCGS_TRY(adcgs_scene_frame(scene, s->origin, &s->scale, error)); /* units do not depend on held-out views */
     ADCGS_TRY(find_stretch(scene, &begin, &end, error));
     s->views[ADCGS_SPLIT_TRAIN] = adcgs_alloc(NULL, n, sizeof *s->views[0], error);
     s->views[ADCGS_SPLIT_VAL] = adcgs_alloc(NULL, n, sizeof *s->views[0], error);

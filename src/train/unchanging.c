@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where the pictures of a camera never change, and what is drawn there. */
+/** \file Detection of anchors rendered where images never change. */
 #include "train/unchanging.h"
 
 #include "data/by_camera.h"
@@ -7,12 +7,12 @@
 #include "train/anchor_set.h"
 #include "train/views.h"
 
-/* Fewer pictures of a camera say little; so many of each are drawn. */
+/* Minimum images per camera for a result; images rendered per camera. */
 enum { PICTURES_LEAST = 4, PICTURES_DRAWN = 4 };
-/* Changes that nobody sees, in standard deviations of all pictures' values. */
+/* Invisible changes, in standard deviations of all images' values. */
 #define UNSEEN 0.2
 
-/** Where the pictures of a camera, its n views in ascending time, change: [height][width]. */
+/** Marks the pixels that change in the images of a camera: [height][width]. view: its n views in ascending time. */
 static adcgs_status find_changing(const adcgs_trainer *t, const uint32_t *view, uint32_t n, uint8_t *region, adcgs_error *error)
 {
     adcgs_changes *changes;
@@ -29,7 +29,10 @@ static adcgs_status find_changing(const adcgs_trainer *t, const uint32_t *view, 
     return status;
 }
 
-/** Weights in a picture: the gradient of the red of pixels that change, by a primitive's red, is its weight there. */
+/**
+ * Adds the weights of an image. The gradient of the red channel at changing pixels with respect to a primitive's red is its
+ * weight there.
+ */
 static adcgs_status add_picture(adcgs_trainer *t, const adcgs_train_view *v, const uint8_t *region, float *drawn, float *changing,
                                 adcgs_error *error)
 {
@@ -52,7 +55,7 @@ static adcgs_status add_picture(adcgs_trainer *t, const adcgs_train_view *v, con
     return ADCGS_OK;
 }
 
-/** Some of a camera's n pictures, evenly chosen. */
+/** Adds some of a camera's n images, evenly chosen. */
 static adcgs_status add_camera(adcgs_trainer *t, const uint32_t *view, uint32_t n, float *drawn, float *changing,
                                adcgs_error *error)
 {
@@ -66,7 +69,7 @@ static adcgs_status add_camera(adcgs_trainer *t, const uint32_t *view, uint32_t 
     return status;
 }
 
-/** All cameras that take enough pictures. of, order: room for a number of each view. */
+/** Adds all cameras with enough images. of, order: buffers of n_views. */
 static adcgs_status add_cameras(adcgs_trainer *t, uint32_t *of, uint32_t *order, float *drawn, float *changing,
                                 adcgs_error *error)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Removal of hidden units, by regression and by rate and distortion. */
+/** \file Pruning of hidden units by regression, rate and distortion. */
 #include "train/unit_prune.h"
 
 #include "fmodel/from_model.h"
@@ -11,12 +11,12 @@
 
 enum { SAMPLES = 4096, WIDTH_MAX = ADCGS_NET_WIDTH_MAX };
 
-/** What a weight will cost on its lattice, about, in bits. */
+/** Approximate bits of a weight on its lattice. */
 #define WEIGHT_BITS 5.0
 
-/** Shares of the loss by removal that are left when the rest of the run has made up for it: of pictures, and of bits. */
-#define LASTING 0.1
-#define LASTING_BITS 0.4
+/* Shares of the distortion that remain after the rest of the run has compensated. */
+#define LASTING 0.1      /* of the image loss */
+#define LASTING_BITS 0.4 /* of the features' bits */
 
 /* ---- Activations at samples ---- */
 
@@ -26,7 +26,7 @@ typedef struct sample {
     double t;
 } sample;
 
-/** The i-th sample, of an anchor and primitive that the network has a part in; 0 if there is none in its place. */
+/** Selects the i-th sample: an anchor and primitive that the network affects. Returns 0 if the selected one is not affected. */
 static int draw(const adcgs_fmodel *f, int group, uint32_t i, sample *s)
 {
     const int deforms = group == ADCGS_P_OMEGA || group == ADCGS_P_VARPI, each = group == ADCGS_P_THETA || group >= ADCGS_P_E_FG;
@@ -38,7 +38,7 @@ static int draw(const adcgs_fmodel *f, int group, uint32_t i, sample *s)
     return !each || f->keep[adcgs_fmodel_slot(f, s->anchor, s->k)] != 0;
 }
 
-/** `count` rows of an anchor's parameters, as they are or, for entropy networks, in units of 16 steps. */
+/** Writes `count` rows of an anchor's parameters, unscaled or, for entropy networks, in units of 16 steps. */
 static double *put_rows(const adcgs_fmodel *f, double *x, int group, uint32_t anchor, int first, int count, int in_steps)
 {
     for (int r = first; r < first + count; r++)
@@ -92,7 +92,7 @@ static void activate(const adcgs_mlp *m, const float *p, const double *x, double
         }
 }
 
-/** Add h of one sample, and a 1, to the lower half of the sums. */
+/** Adds the products of one sample's h and a 1 to the lower half of the sums. */
 static void add_products(double *sum, const double *h, int n)
 {
     for (int i = 0; i < n; i++) {
@@ -102,16 +102,16 @@ static void add_products(double *sum, const double *h, int n)
     }
 }
 
-/* ---- The inverse of the sums ---- */
+/* ---- Inverse of the sums ---- */
 
-/** Invert a positive definite matrix, of which the lower half is given, in place (Gauss and Jordan, no pivots needed). */
+/** Inverts a positive definite matrix in place, given its lower half (Gauss-Jordan; no pivoting needed). */
 static void invert(double *a, int n)
 {
     double mean = 0;
     for (int i = 0; i < n; i++)
         mean += a[i * n + i] / n;
     for (int i = 0; i < n; i++) {
-        a[i * n + i] += 1e-6 * mean + 1e-30; /* units that are nearly the same, or never active */
+        a[i * n + i] += 1e-6 * mean + 1e-30; /* for units that are nearly equal, or never active */
         for (int j = 0; j < i; j++)
             a[j * n + i] = a[i * n + j];
     }
@@ -166,7 +166,7 @@ void adcgs_gram_clear(adcgs_gram *gram)
     memset(gram, 0, sizeof *gram);
 }
 
-/* ---- Silence ---- */
+/* ---- Removal of a unit ---- */
 
 void adcgs_mlp_silence(const adcgs_mlp *m, float *p, adcgs_gram *gram, int unit)
 {
@@ -193,8 +193,8 @@ void adcgs_mlp_silence(const adcgs_mlp *m, float *p, adcgs_gram *gram, int unit)
 }
 
 /**
- * What the layers after a unit feel of its absence: the part of it that the others cannot take over, by the square of each
- * weight that reads it, by the mean square of the gradient where that leads (Adam keeps it for the biases).
+ * Effect of a unit's removal on the layers after it. It is the part that the others cannot replace, times the square of each
+ * weight that reads it, times the mean squared gradient there (Adam keeps it for the biases).
  */
 static double presence(const adcgs_mlp *m, const adcgs_param *param, const adcgs_gram *gram, int unit, const uint8_t *keep)
 {
@@ -237,7 +237,7 @@ void adcgs_fmodel_narrow(adcgs_fmodel *f, int group, const uint8_t *keep)
         width += keep[u] != 0;
     adcgs_fmodel_set_width(f, group, width);
     for (size_t block = 0; block < ADCGS_COUNTOF(blocks); block++) {
-        float *to = blocks[block]; /* never ahead of what is read */
+        float *to = blocks[block]; /* never ahead of the reads */
         for (int l = 0; l <= old.hidden; l++) {
             const float *w = blocks[block] + old.w[l], *b = blocks[block] + old.b[l];
             for (int o = 0; o < old.n_out[l]; o++)
@@ -255,8 +255,8 @@ typedef struct slimming {
     adcgs_trainer *t;
     int group, width, left; /**< width before, units left */
     uint8_t keep[WIDTH_MAX], best_keep[WIDTH_MAX];
-    float *best;            /**< parameters where the cost was least */
-    double before, least;   /**< distortion with all units; least cost yet */
+    float *best;            /**< parameters of the lowest cost */
+    double before, least;   /**< distortion with all units; lowest cost so far */
     adcgs_gram gram;
 } slimming;
 
@@ -267,7 +267,7 @@ static double bits_left(const slimming *s)
     return WEIGHT_BITS * (double)adcgs_mlp_layout(&narrow, m->own, m->time, s->left, m->hidden, m->out);
 }
 
-/** Whether the units left are the best set yet. */
+/** Tests if the remaining units are the best set so far. */
 static adcgs_status judge(slimming *s, int *better, adcgs_error *error)
 {
     adcgs_fmodel *f = s->t->f;
@@ -287,7 +287,7 @@ static adcgs_status judge(slimming *s, int *better, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** A network's units, some at a time; the search ends when a quarter of them has gone without being worth it. */
+/** Removes a network's units, some at a time. The search ends when a quarter of them has gone without a gain. */
 static adcgs_status slim_network(slimming *s, adcgs_error *error)
 {
     adcgs_fmodel *f = s->t->f;
@@ -319,10 +319,10 @@ adcgs_status adcgs_prune_units(adcgs_trainer *t, adcgs_error *error)
     adcgs_status status = ADCGS_OK;
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
         if (t->f->mlp[i].n)
-            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, 1); /* entropy networks become the coder's */
+            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, 1); /* entropy networks take the coder's form */
     for (int i = ADCGS_P_ANCHOR; status == ADCGS_OK && i < ADCGS_P_COUNT; i++) {
         slimming s = { .t = t, .group = i };
-        /* E_q trades pictures for bits: neither alone can judge it. */
+        /* E_q trades distortion for bits: neither measure alone can judge it. */
         if (!t->f->mlp[i].hidden || i == ADCGS_P_E_STEPS || adcgs_fmodel_is_settled(t->f, i))
             continue;
         s.best = adcgs_alloc(NULL, t->f->param[i].n, sizeof *s.best, error);

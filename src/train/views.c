@@ -110,13 +110,13 @@ adcgs_status adcgs_trainer_loss_crop(adcgs_trainer *t, uint32_t view, const adcg
     const size_t wide = (size_t)v->width, w = (size_t)crop->width, h = (size_t)crop->height;
     const size_t x = (size_t)lrintf(v->cx - crop->cx), y = (size_t)lrintf(v->cy - crop->cy);
     const adcgs_loss_shares shares = { t->config.ssim_weight, t->config.square_weight };
-    for (size_t c = 0; c < 3; c++) /* in place: nothing moves behind what is still to come */
+    for (size_t c = 0; c < 3; c++) /* in place: writes never pass the reads */
         for (size_t j = 0; j < h; j++)
             memmove(t->taken + (c * h + j) * w, t->taken + (c * (size_t)v->height + y + j) * wide + x, w * sizeof(float));
     return adcgs_loss_image(t->loss, t->image, t->taken, crop->width, crop->height, &shares, t->grad, value, error);
 }
 
-/** The background that makes up a target: where images have alpha, it is divided by the gain with all else. */
+/** Background of a target. For images with alpha it is divided by the gain like the rest. */
 static void backdrop_of(const adcgs_trainer *t, uint32_t of, float backdrop[3])
 {
     memcpy(backdrop, t->scene->background, 3 * sizeof *backdrop);

@@ -46,7 +46,7 @@ adcgs_status adcgs_weight_step_bits(const adcgs_mlp *m, const float *p, int laye
 typedef struct search {
     adcgs_trainer *t;
     int group, layer, min, max; /**< min, max: exponents allowed */
-    double base; /**< distortion of the networks as they are, in bits: loss, or the features' bits */
+    double base; /**< distortion of the current networks in bits: loss, or the features' bits */
 } search;
 
 static adcgs_status cost_of(const search *s, int e, double *cost, adcgs_error *error)
@@ -65,7 +65,9 @@ static adcgs_status cost_of(const search *s, int e, double *cost, adcgs_error *e
     return ADCGS_OK;
 }
 
-/** From an exponent by steps of one kind for as long as that pays; a loss that wavers may hold it up for one step. */
+/**
+ * Changes an exponent by steps in one direction as long as the cost falls. A noisy loss may interrupt the search for one step.
+ */
 static adcgs_status walk(const search *s, int *e, double *least, int step, adcgs_error *error)
 {
     for (int at = *e + step; (at - *e) * step <= PATIENCE; at += step) {
@@ -79,7 +81,10 @@ static adcgs_status walk(const search *s, int *e, double *least, int step, adcgs
     return ADCGS_OK;
 }
 
-/** Around the nominal exponent, both ways: where it is far too coarse a loss that wavers may fall with a coarser one, too. */
+/**
+ * Searches around the nominal exponent in both directions. If it is far too coarse, a noisy loss may also fall with a coarser
+ * one.
+ */
 static adcgs_status choose_layer(const search *s, int from, int8_t *chosen, adcgs_error *error)
 {
     int coarser = from, finer = from;
@@ -91,7 +96,10 @@ static adcgs_status choose_layer(const search *s, int from, int8_t *chosen, adcg
     return ADCGS_OK;
 }
 
-/** Steps per root mean square of a layer's weights, about: outputs are touchier, and most of all motion's, which are places. */
+/**
+ * Approximate steps per RMS of a layer's weights. Output layers are more sensitive, above all those of motion, which are
+ * positions.
+ */
 static double nominal_steps(int group, int is_last)
 {
     return !is_last ? 16 : group == ADCGS_P_OMEGA ? 1024 : 64;
@@ -120,16 +128,17 @@ void adcgs_weight_steps_nominal(adcgs_trainer *t)
 }
 
 /**
- * The coarsest lattice of a layer. An entropy network has none coarser than the nominal one: where a stream has next to no bits
- * left any lattice would do by itself, but those of all layers and networks together move the means of all anchors by many steps,
- * when they are chosen, and again with the first weight that changes its point in training.
+ * The coarsest lattice of a layer. For an entropy network it is the nominal one. In a stream with hardly any bits left, each
+ * single lattice could be coarse without harm. But together the lattices of all layers and networks would shift the means of all
+ * anchors by many steps. The shift occurs when they are chosen, and again with the first weight that moves to another lattice
+ * point in training.
  */
 static int coarsest(const adcgs_fmodel *f, int group, int layer)
 {
     return f->mlp[group].entropy ? nominal(f, group, layer) : ADCGS_WEIGHT_STEP_MIN;
 }
 
-/** A network's layers one after the other, each with the others as they were before: their losses add up. */
+/** Chooses a network's layers one after the other, each with the previous lattices of the others: their losses add up. */
 static adcgs_status choose_network(adcgs_trainer *t, int group, int8_t chosen[ADCGS_MLP_LAYERS], adcgs_error *error)
 {
     adcgs_mlp *m = &t->f->mlp[group];
@@ -160,7 +169,7 @@ adcgs_status adcgs_weight_steps_choose(adcgs_trainer *t, adcgs_error *error)
         if (m->n)
             adcgs_mlp_prepare(m, t->f->param[i].p, 1);
     }
-    /* E_q acts on pictures and features at once; its few weights keep all bits. */
+    /* E_q affects both the image and the features; its few weights keep all bits. */
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT && !t->config.without_weight_steps; i++)
         if (t->f->mlp[i].n && i != ADCGS_P_E_STEPS && !adcgs_fmodel_is_settled(t->f, i))
             ADCGS_TRY(choose_network(t, i, chosen[i], error));

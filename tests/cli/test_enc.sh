@@ -277,7 +277,7 @@ expect 2 "setting k=17: expected a whole number from 1 to 16" $try --set k=17
 expect 2 "n_fg=9 and chunks=4: expected a multiple of chunks" $try --set n_fg=9
 expect 2 "start_anchors=700 and max_anchors=300" $try --preset draft --set start_anchors=700 --max-anchors 300
 expect 2 "unknown setting 'slim_at'" $try --set slim_at=0.5
-expect 2 "lambda=2 and a size or PSNR to meet" $try --set lambda=2 --size 100k
+expect 2 "lambda=2 and a target size or PSNR" $try --set lambda=2 --size 100k
 expect 2 "1 to 64" $try --scale 0
 expect 2 "0 to 256" $try --threads -1
 expect 2 "whole number" $try --seed x

@@ -290,7 +290,7 @@ static void strangers_are_noticed(void **state)
     run_team(team, 2, &b);
     for (int r = 0; r < 2; r++) {
         assert_int_equal(team[r].status, ADCGS_ERR_DATA);
-        assert_non_null(strstr(team[r].error.text, "at iteration 0 number 2 of the 2 that learn together has another model"));
+        assert_non_null(strstr(team[r].error.text, "at iteration 0 run 2 of the 2 that train together has a different model"));
         adcgs_trainer_free(&team[r].t);
     }
 }

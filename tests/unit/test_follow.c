@@ -173,7 +173,7 @@ static void stopping_changes_nothing(void **state)
     learn(&other, &before);
     adcgs_trainer *stranger = make(&config, &other, NULL);
     assert_int_equal(adcgs_trainer_restore(stranger, middle.data, middle.size, &error), ADCGS_ERR_DATA);
-    assert_non_null(strstr(error.text, "another segment before it"));
+    assert_non_null(strstr(error.text, "another previous segment"));
     adcgs_trainer_free(&stranger);
     adcgs_model_clear(&other, NULL);
     adcgs_buffer_clear(&middle);

@@ -244,20 +244,20 @@ static void checkpoints_know_their_scene(void **state)
     other.n_views[ADCGS_SPLIT_TRAIN] = 4;
     other.views[ADCGS_SPLIT_TRAIN] = views;
     memcpy(views, scene->views[ADCGS_SPLIT_TRAIN], sizeof views);
-    refuse_checkpoint(&other, "training views there and 4 here");
+    refuse_checkpoint(&other, "training views in the file and 4 here");
     other = *scene;
     other.background[1] = 0.5f;
-    refuse_checkpoint(&other, "its background");
+    refuse_checkpoint(&other, "different background");
     adcgs_scene_view *v = &scene->views[ADCGS_SPLIT_TRAIN][3];
     const adcgs_scene_view kept = *v;
     v->camera.fy *= 1.001;
-    refuse_checkpoint(scene, "its cameras");
+    refuse_checkpoint(scene, "different cameras");
     *v = kept;
     v->lens.k[0] = 0.01;
-    refuse_checkpoint(scene, "its cameras");
+    refuse_checkpoint(scene, "different cameras");
     *v = kept;
     v->time += 1e-4;
-    refuse_checkpoint(scene, "its moments");
+    refuse_checkpoint(scene, "different timestamps");
     *v = kept;
 
     /* One level of one sample of one picture. */
@@ -268,7 +268,7 @@ static void checkpoints_know_their_scene(void **state)
     assert_int_equal(fseek(file, -1, SEEK_END), 0);
     fputc(level ^ 1, file);
     fclose(file);
-    refuse_checkpoint(scene, "the training pictures' files hold something else now");
+    refuse_checkpoint(scene, "the files of the training images have changed");
     file = fopen(v->path, "r+b");
     assert_int_equal(fseek(file, -1, SEEK_END), 0);
     fputc(level, file);
