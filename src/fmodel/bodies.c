@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Rigid bodies: poses, their gradients, and what they turn about. */
+/** \file Rigid bodies: poses, their gradients, and their centres of rotation. */
 #include "fmodel/bodies.h"
 
 #include "camera/rotation.h"
 
 #include <math.h>
 
-/** The quaternion in seven columns, not yet of length 1; returns its length. */
+/** Reads and normalises a quaternion from the first four of a pose's seven columns. Returns its original length. */
 static float read_quaternion(const float *columns, float q[4])
 {
     float square = 0;
@@ -39,7 +39,7 @@ void adcgs_bodies_pose_back(const adcgs_fmodel *f, const float *columns, const a
         float q[4];
         const float length = read_quaternion(columns + adcgs_pose_at(&f->params, b + 1), q);
         const float w = q[0], x = q[1], y = q[2], z = q[3];
-        /* Of the quaternion and of the matrix 1 - 2 y^2 - 2 z^2, 2 x y - 2 w z, ... */
+        /* Gradient of the quaternion and of the matrix 1 - 2 y^2 - 2 z^2, 2 x y - 2 w z, ... */
         const float g[4] = {
             grad->q[0] + 2 * (z * (m[3] - m[1]) + y * (m[2] - m[6]) + x * (m[7] - m[5])),
             grad->q[1] + 2 * (y * (m[1] + m[3]) + z * (m[2] + m[6]) + w * (m[7] - m[5]) - 2 * x * (m[4] + m[8])),
@@ -54,7 +54,7 @@ void adcgs_bodies_pose_back(const adcgs_fmodel *f, const float *columns, const a
     }
 }
 
-/** The way of a pose about one point, seen from another: R (x - a) + a + way = R (x - b) + b + out. */
+/** Converts a pose's translation from one pivot to another: R (x - a) + a + way = R (x - b) + b + out. */
 static void move_pivot(const double q[4], const double a[3], const double way[3], const double b[3], double out[3])
 {
     const double v[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
@@ -101,7 +101,7 @@ uint32_t adcgs_bodies_box(const adcgs_fmodel *f, int body, int tiers, uint32_t l
     return n;
 }
 
-/** Centre of the box of a body's anchors; where it is now if it has none. */
+/** Centre of the box of a body's anchors; the current centre if it has none. */
 static void find_centre(const adcgs_fmodel *f, int body, float centre[3])
 {
     uint32_t low[3], high[3], n = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The float model's memory, starting values and regrouping. */
+/** \file The float model's memory, initial values and regrouping. */
 #include "fmodel/fmodel.h"
 
 #include "base/fmath.h"
@@ -90,8 +90,8 @@ static adcgs_status param_alloc(adcgs_param *p, size_t n, adcgs_error *error)
 }
 
 /**
- * Waves of half a cycle and more, fainter as they quicken: neighbouring times look alike from the start, and motion
- * begins smooth.
+ * Sines and cosines of half a cycle and more, with amplitudes that decrease with frequency. Adjacent times are similar from the
+ * start, and motion starts smooth.
  */
 static void start_time_table(adcgs_fmodel *f)
 {
@@ -147,7 +147,7 @@ static void start_steps(adcgs_fmodel *f)
     adcgs_fmodel_take_steps(f);
 }
 
-/** Rows of a group that have steps of their own. */
+/** Number of rows of a group with their own steps. */
 static int channels_of(const adcgs_fmodel *f, int group)
 {
     return group == ADCGS_P_FG ? f->params.n_fg : adcgs_fmodel_rows(f, group);
@@ -176,7 +176,7 @@ void adcgs_fmodel_widen_steps(adcgs_fmodel *f)
 
 void adcgs_fmodel_take_steps(adcgs_fmodel *f)
 {
-    if (f->follows) /* they are what the segment before has, to the bit */
+    if (f->follows) /* equal to the previous segment's, to the bit */
         return;
     const float reach = logf(64);
     for (int i = 0; i < ADCGS_P_ETA; i++) {
@@ -195,7 +195,7 @@ static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *erro
     f->n = n;
     f->groups = (uint32_t)groups;
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
-        f->param[i].p = NULL; /* what they had is the caller's to free */
+        f->param[i].p = NULL; /* the caller frees the old arrays */
     f->pos = adcgs_alloc(NULL, n, sizeof *f->pos, error);
     f->x = adcgs_alloc(NULL, groups * 3 * ADCGS_LANES, sizeof(float), error);
     f->code = adcgs_alloc(NULL, groups * ADCGS_LANES * 6 * (size_t)(f->params.octaves + 1), sizeof(float), error);
@@ -214,7 +214,7 @@ static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *erro
     return ADCGS_OK;
 }
 
-/** What follows from the voxels alone: positions, position codes, padding. */
+/** Sets the values that follow from the voxels: positions, position codes, padding. */
 static void place_anchors(adcgs_fmodel *f, const uint32_t (*pos)[3])
 {
     memcpy(f->pos, pos, f->n * sizeof *f->pos);
@@ -306,7 +306,7 @@ void adcgs_fmodel_free(adcgs_fmodel **model)
     *model = NULL;
 }
 
-/** Copy anchor `from` of old array to anchor `to` of new, rows features each. */
+/** Copies anchor `from` of the old array to anchor `to` of the new one, with `rows` features each. */
 static void copy_rows(float *to_array, const float *from_array, uint32_t to, uint32_t from, size_t rows)
 {
     float *t = to_array + (size_t)(to / ADCGS_LANES) * rows * ADCGS_LANES + to % ADCGS_LANES;
@@ -356,7 +356,7 @@ adcgs_time_rows adcgs_fmodel_time_rows(const adcgs_params *params, float t)
         return (adcgs_time_rows){ (int)at.row, 2, { 1 - at.fraction, at.fraction } };
     const float *w = at.weight;
     const int before = at.row > 0, behind = at.row + 2 < rows;
-    /* A row that is not there is twice its neighbour less the one beyond. */
+    /* A missing row is extrapolated: twice its neighbour minus the row beyond it. */
     const float b = w[1] + (before ? 0 : 2 * w[0]) - (behind ? 0 : w[3]);
     const float c = w[2] + (behind ? 0 : 2 * w[3]) - (before ? 0 : w[0]);
     return before ? (adcgs_time_rows){ (int)at.row - 1, 3 + behind, { w[0], b, c, w[3] } } :

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs_model to float model. */
+/** \file From adcgs_model to the float model. */
 #include "fmodel/from_model.h"
 
 #include "fmodel/bodies.h"
@@ -40,13 +40,13 @@ static adcgs_status take_network(adcgs_fmodel *f, int group, const adcgs_net *ne
     for (int l = 0; fits && l <= m->hidden; l++)
         fits = net->layer[l].w.rows == (uint32_t)m->n_out[l] && net->layer[l].w.cols == (uint32_t)m->in[l];
     if (!fits)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "the segment before has networks of another shape");
+        return adcgs_fail(error, ADCGS_ERR_DATA, "the previous segment has networks of another shape");
     for (int l = 0; l <= m->hidden; l++)
         take_layer(m, f->param[group].p, net, l);
     return ADCGS_OK;
 }
 
-/** Networks of motion may be absent where nothing moved yet: they begin anew. */
+/** Takes the networks. Motion networks are absent if nothing has moved yet, and then keep their initial values. */
 static adcgs_status take_networks(adcgs_fmodel *f, const adcgs_model *model, adcgs_error *error)
 {
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
@@ -71,7 +71,7 @@ static void take_steps(adcgs_fmodel *f, const adcgs_model *model)
     }
 }
 
-/** The values of one anchor; factor: of its steps, Sigma_v's, C_v's, then those of the chunks of f_g. */
+/** Takes the values of one anchor. factor: of the steps of Sigma_v, of C_v, and of the chunks of f_g. */
 static void take_anchor(adcgs_fmodel *f, const adcgs_model *model, uint32_t a, const float *factor)
 {
     const adcgs_params *p = &f->params;
@@ -124,7 +124,7 @@ adcgs_status adcgs_fmodel_from_model(adcgs_fmodel **out, const adcgs_model *mode
                                      adcgs_cpu_level cpu, adcgs_error *error)
 {
     if (shape->depth != model->depth)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "the segment before has a grid of depth %u, expected %d", model->depth,
+        return adcgs_fail(error, ADCGS_ERR_DATA, "the previous segment has a grid of depth %u, expected %d", model->depth,
                           shape->depth);
     ADCGS_TRY(adcgs_fmodel_create(out, &model->params, shape, model->origin, model->voxel, (const uint32_t(*)[3])model->pos,
                                   model->n, seed, error));
@@ -135,7 +135,7 @@ adcgs_status adcgs_fmodel_from_model(adcgs_fmodel **out, const adcgs_model *mode
     f->finest = model->finest;
     take_steps(f, model);
     adcgs_status status = take_anchors(f, model, cpu, error);
-    adcgs_bodies_recentre(f); /* before the poses come, which are about the centres of these anchors */
+    adcgs_bodies_recentre(f); /* before the poses, which refer to the centres of these anchors */
     if (status == ADCGS_OK)
         status = take_networks(f, model, error);
     if (status != ADCGS_OK)

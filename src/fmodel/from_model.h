@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * From the numbers of a stream back to the float model, for a run that goes on with the segment before: a predicted segment
- * shares the meaning of values with it, so steps, prior, and the networks that give values their meaning are settled, and an
- * anchor stays what it is until it learns.
+ * From a stream's numbers to the float model, for a run that continues the previous segment. A predicted segment shares the
+ * meaning of values with the previous one. So steps, prior, and the networks that define this meaning are frozen. An anchor is
+ * unchanged until it is trained.
  */
 #ifndef ADCGS_FMODEL_FROM_MODEL_H
 #define ADCGS_FMODEL_FROM_MODEL_H
@@ -10,13 +10,13 @@
 #include "fmodel/fmodel.h"
 
 /**
- * The float model whose quantisation the model is. shape and params are those of the run, which have to be the model's but for
- * widths; no anchor learns. ADCGS_ERR_DATA where they are not.
+ * Creates the float model whose quantisation is `model`. shape and params of the run must match the model except in widths;
+ * otherwise ADCGS_ERR_DATA. All anchors are frozen.
  */
 adcgs_status adcgs_fmodel_from_model(adcgs_fmodel **out, const adcgs_model *model, const adcgs_shape *shape, uint64_t seed,
                                      adcgs_cpu_level cpu, adcgs_error *error);
 
-/** Whether a parameter group says what values mean, and is settled where a model goes on with another. */
+/** True if a parameter group defines the meaning of values, and so is frozen in a model that continues another. */
 int adcgs_fmodel_is_settled(const adcgs_fmodel *f, int group);
 
 #endif

@@ -71,7 +71,7 @@ void adcgs_mlp_start(const adcgs_mlp *mlp, float *p, float last, uint64_t seed, 
     }
 }
 
-/** Onto a lattice that is that of the integer networks or coarser. NaN, of a run about to be rolled back, becomes -limit. */
+/** Rounds to the lattice of the integer networks or a coarser one. NaN, in a run that is about to roll back, becomes -limit. */
 static float integer_weight(float w, int e, int limit)
 {
     const float v = rintf(ldexpf(w, e)) * (float)(1 << (ADCGS_E24_BITS - e));
@@ -79,8 +79,8 @@ static float integer_weight(float w, int e, int limit)
 }
 
 /**
- * The row bound of the decoder, A*sum|w| + |b| + 2^(s-1) <= 2^24 - 1 with any shift s of the integer networks, by halving the
- * row: never needed by networks that train normally.
+ * Enforces the decoder's bound on a row, A*sum|w| + |b| + 2^(s-1) <= 2^24 - 1 with any shift s of the integer networks, by
+ * halving the row. Networks that train normally never need it.
  */
 static void bound_row(float *w, float *b, int n)
 {
@@ -143,7 +143,7 @@ void adcgs_mlp_pack(const adcgs_train_dsp *dsp, const adcgs_mlp *mlp)
     }
 }
 
-/* ---- Running ---- */
+/* ---- Evaluation ---- */
 
 void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, uint64_t *below, float *out)
 {
@@ -162,7 +162,7 @@ void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const f
                          const float *dout, float *dz)
 {
     const size_t tile = (size_t)m->width * ADCGS_LANES;
-    /* dz[0] carries dL/dh downwards until it becomes layer 0's own gradient. */
+    /* dz[0] carries dL/dh down to layer 0, where it becomes that layer's gradient. */
     dsp->dense.dense(dz, NULL, NULL, m->turn + m->w[m->hidden], (size_t)m->out, dout, m->width, m->out);
     for (int i = m->hidden - 1; i > 0; i--) {
         const adcgs_square turn = { m->width, m->turn + m->w[i], adcgs_mlp_packed(m, i, 1) };

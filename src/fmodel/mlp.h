@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Multilayer perceptrons in training: their layout, the weights that a pass
- * uses, running them over tiles of samples and differentiating them.
+ * Multilayer perceptrons in training: their layout, the weights that a pass uses, evaluation over tiles of samples, and
+ * gradients.
  */
 #ifndef ADCGS_FMODEL_MLP_H
 #define ADCGS_FMODEL_MLP_H
@@ -9,7 +9,7 @@
 #include "grad/dsp.h"
 
 #define ADCGS_MLP_LAYERS 4
-#define ADCGS_WEIGHT_STEP_NONE 127 /**< weights that are binary32 */
+#define ADCGS_WEIGHT_STEP_NONE 127 /**< binary32 weights */
 
 /**
  * Shape of a network: inputs [own | time], hidden layers of equal width (leaky ReLU; from the second on residual), linear output.
@@ -20,7 +20,7 @@ typedef struct adcgs_mlp {
     int in[ADCGS_MLP_LAYERS], n_out[ADCGS_MLP_LAYERS];
     size_t w[ADCGS_MLP_LAYERS], b[ADCGS_MLP_LAYERS]; /**< offsets into the block */
     size_t n;                                        /**< parameters; 0: the network does not exist */
-    float *use;   /**< [n] the weights the forward pass uses: the parameters, or their lattice values */
+    float *use;   /**< [n] the weights of the forward pass: the parameters, or their lattice values */
     float *turn;  /**< [n] the same transposed per layer: w^T [n_in][n_out] at w's offset */
     uint32_t *packed; /**< see adcgs_mlp_packed(); NULL in an entropy network */
     int8_t weight_step[ADCGS_MLP_LAYERS]; /**< exponent e of the step 2^-e of each layer's weights, or ADCGS_WEIGHT_STEP_NONE */
@@ -29,26 +29,26 @@ typedef struct adcgs_mlp {
 
 /** Fill in a network's layout; returns its number of parameters. */
 size_t adcgs_mlp_layout(adcgs_mlp *mlp, int own, int time, int width, int hidden, int out);
-/** Memory for the weights in use; m is laid out. */
+/** Allocates the weights in use; m has its layout. */
 adcgs_status adcgs_mlp_alloc(adcgs_mlp *m, adcgs_error *error);
 void adcgs_mlp_clear(adcgs_mlp *m);
-/** Give hidden layers another width, at most what memory is for; parameters are left to the caller. \return how many. */
+/** Sets the width of hidden layers, at most the allocated one. The caller updates the parameters. \return their number. */
 size_t adcgs_mlp_set_width(adcgs_mlp *m, int width);
-/** Parameters to begin with: weights uniform within +-sqrt(3/n_in) of unit gain, biases zero; the last layer scaled by `last`. */
+/** Initial parameters: weights uniform within +-sqrt(3/n_in) of unit gain, biases zero; the last layer scaled by `last`. */
 void adcgs_mlp_start(const adcgs_mlp *mlp, float *p, float last, uint64_t seed, uint64_t stream);
 
-/** Copy parameters into `use` (on the lattice where lattice is set and `quantise` is nonzero) and transpose. */
+/** Copies parameters to `use` (on the lattice if `quantise` is nonzero and a lattice is set) and transposes them. */
 void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise);
-/** Pack the residual layers of `use` and `turn` for these kernels, if they ask for it. */
+/** Packs the residual layers of `use` and `turn` if these kernels need it. */
 void adcgs_mlp_pack(const adcgs_train_dsp *dsp, const adcgs_mlp *mlp);
-/** Where the packed weights of residual layer i >= 1 lie, or the same transposed. */
+/** The packed weights of residual layer i >= 1, or their transpose. */
 static inline uint32_t *adcgs_mlp_packed(const adcgs_mlp *mlp, int i, int turned)
 {
     return mlp->packed ? mlp->packed + (size_t)(2 * (i - 1) + turned) * adcgs_square_words(mlp->width) : NULL;
 }
 /**
- * The weights [n] of the integer network that an entropy network's parameters stand for, as multiples of 2^-ADCGS_E24_BITS: in
- * range, and every row within the bound that makes its sums exact.
+ * The weights [n] of the integer network for an entropy network's parameters, as multiples of 2^-ADCGS_E24_BITS: in range, and
+ * every row within the bound that makes its sums exact.
  */
 void adcgs_mlp_integer(const adcgs_mlp *mlp, const float *p, float *to);
 
@@ -58,9 +58,9 @@ static inline size_t adcgs_mlp_below_rows(const adcgs_mlp *m)
     return m->hidden > 1 ? ((size_t)(m->hidden - 1) * (size_t)m->width + 31) / 32 : 0;
 }
 
-/** Run layers 1.. of a network: h[0] holds layer 0's sums and is activated in place. */
+/** Evaluates layers 1.. of a network: h[0] holds layer 0's sums and is activated in place. */
 void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, uint64_t *below, float *out);
-/** Gradients dz of every hidden layer's sums from dout. */
+/** Gradients dz of every hidden layer's sums, from dout. */
 void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below,
                          const float *dout, float *dz);
 /** Weight gradients of layers 1.. over tiles of the given strides. */

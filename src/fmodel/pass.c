@@ -25,7 +25,7 @@ static void quantise_rows(const forward_job *job, uint32_t g, int i, float *to, 
         memcpy(to, value, (size_t)rows * ADCGS_LANES * sizeof *value);
 }
 
-/** What is settled is what it will be. */
+/** Keeps the values of frozen anchors, which are already those of the stream. */
 static void spare_settled(const adcgs_fmodel *f, uint32_t g, float *to, const float *value, int rows)
 {
     const float *learns = f->learns + (size_t)g * ADCGS_LANES;
@@ -34,7 +34,7 @@ static void spare_settled(const adcgs_fmodel *f, uint32_t g, float *to, const fl
             to[l] = learns[l] != 0 ? to[l] : value[l];
 }
 
-/** f_v comes first: the steps of the others may follow from it. */
+/** Quantises a group. f_v is first, because the other steps may depend on it. */
 static void quantise_group(const forward_job *job, uint32_t g, float *scratch)
 {
     const adcgs_pass *p = job->pass;
@@ -73,7 +73,7 @@ static void forward_theta(const forward_job *job, uint32_t g, float *anchor)
     d->dense(anchor, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], fv, m->width, nv);
     for (int k = 0; k < f->params.k; k++) {
         float *h = act.theta_h + (size_t)k * act.theta_h_stride;
-        d->dense(h, anchor, NULL, m->use + nv + k, (size_t)m->in[0], one, m->width, slots > 0); /* of its slot, if it has one */
+        d->dense(h, anchor, NULL, m->use + nv + k, (size_t)m->in[0], one, m->width, slots > 0); /* slot input, if any */
         d->dense(h, h, NULL, m->use + nv + slots, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * ADCGS_LANES, m->width, ng);
         adcgs_mlp_tail(p->net, m, h, act.theta_below + (size_t)k * act.theta_below_stride,
                        act.theta_out + (size_t)k * ADCGS_THETA_OUT * ADCGS_LANES);

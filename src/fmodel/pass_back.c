@@ -20,8 +20,8 @@ static float *grad_at(const adcgs_fmodel *f, int group, uint32_t g)
 }
 
 /**
- * From the outputs' gradients to weights, f_g and f_v. Each primitive goes all its way while its activations are near; sum, then
- * dz: scratch.
+ * Gradients of weights, f_g and f_v from the outputs' gradients. Each primitive is completed while its activations are in the
+ * cache. sum, followed by dz: scratch.
  */
 static void theta_back(const backward_job *job, uint32_t g, const float *dtheta, float *sum, float *partial)
 {
@@ -56,7 +56,7 @@ static void theta_back(const backward_job *job, uint32_t g, const float *dtheta,
     dsp->weight_grad(gm, (size_t)m->in[0], gm + m->b[0], sum, 0, fv, 0, 1, w, nv);
 }
 
-/** The same for a network of deformation, to its weights beyond the first layer's. */
+/** The same for a deformation network, for its weights after the first layer. */
 static void tail_back(const adcgs_pass *p, const adcgs_mlp *m, const float *h, const uint64_t *below, const float *dout,
                       float *dz, float *gm)
 {
@@ -124,8 +124,8 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
 }
 
 /**
- * Sum of a group's gradients times `to - from` (times `to` if from is NULL) by step, times scale: added into sums laid out as
- * ADCGS_P_STEP.
+ * Adds to sums, laid out as ADCGS_P_STEP: scale times the sum per step of a group's gradients times `to - from` (times `to` if
+ * from is NULL).
  */
 static void step_sums(const adcgs_fmodel *f, uint32_t g, float *const to[], float *const from[], float scale, float *sums)
 {
@@ -140,8 +140,8 @@ static void step_sums(const adcgs_fmodel *f, uint32_t g, float *const to[], floa
 }
 
 /**
- * Rate of a group, and the gradient by the logarithms of the steps: the pictures see them in the noise (or the error of
- * rounding), which is as large as they are; the rate sees the values divided by them.
+ * Rate of a group, and the gradient with respect to the logarithms of steps. Steps affect the images through the noise (or the
+ * rounding error), which is proportional to them. They affect the rate through the values, which are divided by them.
  */
 static void rate_back(const backward_job *job, uint32_t g, float *scratch, float *partial, double *bits)
 {
@@ -193,7 +193,7 @@ static void merge_partials(adcgs_pass *p, adcgs_fmodel *f)
         }
 }
 
-/** Sums of all chunks to the poses of the rows about the time. */
+/** Adds the sums of all chunks to the gradients of the poses in the rows around the time. */
 static void bodies_back(const adcgs_pass *p, adcgs_fmodel *f)
 {
     const int columns = adcgs_fmodel_time_columns(&f->params), n = (int)adcgs_pose_columns(&f->params);
@@ -212,7 +212,7 @@ static void bodies_back(const adcgs_pass *p, adcgs_fmodel *f)
             dz[i * columns + j] += d[j] * at.weight[i];
 }
 
-/** The time part of the first layers: their bias gradient is the gradient of the per-frame bias vector. */
+/** Time inputs of the first layers: their gradient follows from the gradient of the per-frame bias. */
 static void time_back(adcgs_pass *p, adcgs_fmodel *f)
 {
     const int width = f->params.time_width, columns = adcgs_fmodel_time_columns(&f->params);

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Private to the passes: where activations of a group lie, and what forward and backward share. */
+/** \file Private to the passes: layout of a group's activations, and functions shared by forward and backward passes. */
 #ifndef ADCGS_FMODEL_PASS_LAYOUT_H
 #define ADCGS_FMODEL_PASS_LAYOUT_H
 
 #include "fmodel/pass.h"
 #include "grad/random.h"
 
-/** Groups are merged in this many fixed pieces, whatever the number of threads. */
+/** Number of pieces in which groups are merged, for any number of threads. */
 #define ADCGS_PASS_CHUNKS 8
 
-/** Activations of one group. h: hidden layers' outputs; below: what adcgs_train_dsp.residual says of the branches. */
+/** Activations of one group. h: outputs of hidden layers; below: sign masks of adcgs_train_dsp.residual. */
 typedef struct adcgs_act {
     float *theta_h, *theta_out; /* per primitive, and theta_below */
     size_t theta_h_stride, theta_below_stride;
@@ -46,10 +46,10 @@ static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *
     return a;
 }
 
-/** The arrays that prediction and deformation read and write for a group, and in deform what takes part. */
+/** Sets the arrays that prediction and deformation read and write for a group, according to deform. */
 void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, adcgs_deform deform, adcgs_group_io *io);
 
-/** The deformation of a group of anchors: none where nothing moves, whose networks would be evaluated in vain. */
+/** Deformation of a group of anchors: none if nothing in it moves, which saves the evaluation of the networks. */
 static inline adcgs_deform adcgs_pass_deform_of(const adcgs_fmodel *f, uint32_t g, adcgs_deform deform)
 {
     const float *moving = f->moving + (size_t)g * ADCGS_LANES;
@@ -59,7 +59,7 @@ static inline adcgs_deform adcgs_pass_deform_of(const adcgs_fmodel *f, uint32_t 
     return any > 0 ? deform : ADCGS_DEFORM_NONE;
 }
 
-/** Whether the steps of the last forward pass adapted to the anchors. */
+/** True if the last forward pass used adaptive steps. */
 static inline int adcgs_pass_adapts(const adcgs_pass *p, const adcgs_fmodel *f)
 {
     return f->params.adaptive_steps && p->quant != ADCGS_QUANT_NONE;
@@ -69,22 +69,22 @@ static inline float *adcgs_pass_factors(const adcgs_pass *p, const adcgs_fmodel 
 {
     return p->factor + (size_t)g * (size_t)adcgs_params_steps(&f->params) * ADCGS_LANES;
 }
-/** Which of them the rows of a parameter group use; -1: none. */
+/** Index of the factor for a row of a parameter group; -1: none. */
 int adcgs_pass_factor_of(const adcgs_fmodel *f, int group, int row);
-/** Evaluate E_q on the f_v in used; with set, its outputs give the factors. */
+/** Evaluates E_q on the f_v in `used`; if `set`, its outputs become the factors. */
 void adcgs_pass_evaluate_factors(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int set, float *scratch);
 /** to = from / factor, and to = from * factor, over the rows of a parameter group in a group of anchors. */
 void adcgs_pass_divide(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int group, float *to, const float *from);
 void adcgs_pass_multiply(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int group, float *to, const float *from);
-/** Begin steps_dlog with what the pictures' gradients say; adcgs_rate_group() adds the rate's. */
+/** Initialises steps_dlog from the gradients of the images; adcgs_rate_group() adds those of the rate. */
 void adcgs_pass_factors_begin(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g);
-/** From steps_dlog to E_q and f_v. */
+/** Propagates steps_dlog to E_q and f_v. */
 void adcgs_pass_factors_back(const adcgs_pass *p, adcgs_fmodel *f, uint32_t g, float *partial, float *scratch);
 
 /**
- * Rate of one group: gradients into f's anchors (scale included), where steps adapt into steps_dlog, and partial network
- * gradients; bits[ADCGS_GROUPS] accumulated. Where the last forward pass rounded, the rate is the coder's, and p->mu and
- * p->factor of the group receive the means and the factors of now.
+ * Rate of one group. Adds gradients to f's anchors (scale included), to steps_dlog with adaptive steps, and to the partial
+ * network gradients; adds to bits[ADCGS_GROUPS]. If the last forward pass rounded, the rate is the coder's, and the group's p->mu
+ * and p->factor receive the current means and factors.
  */
 void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, float scale, float *partial, float *scratch,
                       double *bits);

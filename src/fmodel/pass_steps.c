@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Steps that adapt to the anchor: the float twin of E_q, factors of steps, and
- * their gradient. With F the factor of a step s, what the networks see is
- * y + F s u, where the noise u (or the rounding error in its place) does not
- * depend on F, and the rate is that of y/(F s) + u. So the pictures' gradient of
- * ln F is theirs of y times F s u, and the rate's is its gradient of y times -y.
+ * Adaptive steps: the float twin of E_q, factors of steps, and their gradient. With F the factor of a step s, the networks see y
+ * + F s u, where the noise u (or the rounding error in its place) does not depend on F. The rate is that of y/(F s) + u. So the
+ * image gradient with respect to ln F is the image gradient with respect to y times F s u, and the rate's is its gradient with
+ * respect to y times -y.
  */
 #include "base/fmath.h"
 #include "fmodel/pass_layout.h"
@@ -41,7 +40,7 @@ void adcgs_pass_multiply(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g,
     }
 }
 
-/** Inputs of E_q: f_v as the networks see it, in units of 16 steps. */
+/** Inputs of E_q: the quantised f_v, in units of 16 steps. */
 static void inputs(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, float *x)
 {
     const int nv = f->params.n_fv;
@@ -85,7 +84,7 @@ void adcgs_pass_factors_back(const adcgs_pass *p, adcgs_fmodel *f, uint32_t g, f
     const int nv = f->params.n_fv;
     float *x = scratch, *dx = x + nv * ADCGS_LANES, *dz = dx + nv * ADCGS_LANES, *gm = partial + p->partial_at[ADCGS_P_E_STEPS];
     float *dfv = f->param[ADCGS_P_FV].g + (size_t)g * (size_t)nv * ADCGS_LANES;
-    for (int i = 0; i < m->out * ADCGS_LANES; i++) { /* what is beyond the limits may come back, and go no further */
+    for (int i = 0; i < m->out * ADCGS_LANES; i++) { /* outputs beyond the limits may only move back towards them */
         const float d = ln2 * act.steps_dlog[i], octaves = act.steps_out[i];
         act.steps_dlog[i] = (octaves > octaves_max && d < 0) || (octaves < -octaves_max && d > 0) ? 0 : d;
     }

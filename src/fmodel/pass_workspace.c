@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Workspace of the passes: its memory, and where things lie in it. */
+/** \file Workspace of the passes: its memory and layout. */
 #include "fmodel/pass_layout.h"
 
 
-/** Hidden layers, their branches' signs, outputs. */
+/** Rows of hidden layers, of the signs of their branches, and of outputs. */
 static size_t rows_of(const adcgs_mlp *m)
 {
     return (size_t)m->hidden * (size_t)m->width + adcgs_mlp_below_rows(m) + (size_t)m->out;
@@ -34,7 +34,7 @@ static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_err
     return ADCGS_OK;
 }
 
-/** Nothing is left that could be freed again: a pass without groups can still be freed, or resized. */
+/** Frees the arrays and sets them to NULL: a pass without groups can still be freed or resized. */
 static void free_groups(adcgs_pass *p)
 {
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
@@ -49,7 +49,7 @@ static void free_groups(adcgs_pass *p)
     }
 }
 
-/** Rows of scratch of a thread: of prediction and deformation, or of the rate. */
+/** Rows of scratch per thread: the maximum of prediction with deformation, and of the rate. */
 static size_t scratch_rows(const adcgs_fmodel *f)
 {
     const size_t k = f->params.k, nv = f->params.n_fv, ng = f->params.n_fg;

@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Bits of a group of anchors under the float twins of the entropy networks,
- * with gradients into features and networks (paper section 3.4; the contexts
- * are those of spec clause "Latent chain"). Before rounding the twins see the
- * features with noise. Once training rounds they are exact: they walk the chain
- * as the coder does, with its integers, means and tables, and gradients pass
- * straight through every rounding.
+ * Bits of a group of anchors under the float twins of the entropy networks, with gradients into features and networks (paper
+ * section 3.4; the contexts are those of spec clause "Latent chain"). Before rounding, the twins get the features with noise.
+ * Once training rounds, they are exact: they follow the chain like the coder, with its integers, means and tables, and gradients
+ * pass straight through every rounding.
  */
 #include "fmodel/pass_layout.h"
 #include "splat/steps.h"
 
-/** The group at work. x, dx: inputs of networks and their gradients. */
+/** The current group. x, dx: inputs of networks and their gradients. */
 typedef struct job {
     const adcgs_pass *p;
     adcgs_fmodel *f;
@@ -22,8 +20,8 @@ typedef struct job {
 } job;
 
 /**
- * Scratch of one network over `tiles` tiles: sums and outputs of hidden layers, gradients of the sums, outputs, which sums are
- * below 0.
+ * Scratch of one network over `tiles` tiles: sums and outputs of hidden layers, gradients of the sums, outputs, and sign masks of
+ * the sums.
  */
 typedef struct net_tiles {
     float *z, *h, *dz, *out, *dout;
@@ -48,7 +46,7 @@ static net_tiles take_tiles(const adcgs_mlp *m, int tiles, float **scratch)
     return t;
 }
 
-/** g += dx / (gain*step): the way back from inputs to values. */
+/** g += dx / (gain*step): from gradients of inputs to gradients of values. */
 static void unscale_rows(float *g, const float *dx, const float *step, int rows)
 {
     for (int r = 0; r < rows; r++) {
@@ -58,7 +56,7 @@ static void unscale_rows(float *g, const float *dx, const float *step, int rows)
     }
 }
 
-/** Factor of the steps of a coded group at these anchors: [64], or NULL. */
+/** Factor of a coded group's steps at these anchors: [64], or NULL. */
 static const float *factor_of(const job *j, int stream)
 {
     const int adapts = adcgs_pass_adapts(j->p, j->f) && stream >= ADCGS_GROUP_SIGMA;
@@ -66,8 +64,9 @@ static const float *factor_of(const job *j, int stream)
 }
 
 /**
- * Where steps adapt: gradients dv of rows of values in units of their factor become gradients of the values, from row `first` of
- * a parameter group, and of the factor. unit: steps by row, if dv is one of inputs of networks, or NULL.
+ * With adaptive steps: converts gradients dv with respect to values in units of their factor to gradients of the values and of
+ * the factor. The rows start at `first` of a parameter group. unit: steps per row if dv belongs to network inputs; otherwise
+ * NULL.
  */
 static void adapted_back(const job *j, int param, int stream, int first, int rows, const float *dv, const float *unit)
 {
@@ -97,7 +96,7 @@ static void net_tail(const job *j, const adcgs_mlp *m, float *z, float *h, uint6
                      m->width);
 }
 
-/** What is coded: `count` rows from row `first` of a parameter group's rows in this group of anchors. */
+/** Coded rows: `count` rows from row `first` of a parameter group in this group of anchors. */
 typedef struct coded {
     int param, first, count;
     adcgs_group stream;
@@ -105,7 +104,7 @@ typedef struct coded {
     float *x; /* receives the values as inputs, or NULL */
 } coded;
 
-/** Bits of the spans, which come behind the rows of io. */
+/** Bits of the lifetimes, whose rows follow those of io. */
 static double rate_spans(const job *j, const adcgs_rate_io *io)
 {
     _Alignas(64) float weight[ADCGS_LANES];
@@ -157,7 +156,7 @@ static void rate_rows(const job *j, const coded *c, const float *out, float *dou
         io.y = values;
         io.dy = gradients;
     }
-    const int spans = c->stream == ADCGS_GROUP_SIGMA && c->count > ADCGS_SIGMA_N; /* what is static has none */
+    const int spans = c->stream == ADCGS_GROUP_SIGMA && c->count > ADCGS_SIGMA_N; /* static anchors have none */
     io.n = spans ? ADCGS_SIGMA_N : c->count;
     j->bits[c->stream] += (j->exact ? j->p->dsp.rate_exact : j->p->dsp.rate)(&io);
     if (spans)
@@ -166,7 +165,7 @@ static void rate_rows(const job *j, const coded *c, const float *out, float *dou
         adapted_back(j, c->param, (int)c->stream, c->first, c->count, gradients, NULL);
 }
 
-/** The factors of now: E_q as the coder has it on the f_v that xv holds. */
+/** Computes the current factors: E_q as in the coder, on the f_v in xv. */
 static void exact_factors(const job *j, float *scratch)
 {
     const adcgs_mlp *m = &j->f->mlp[ADCGS_P_E_STEPS];
@@ -179,7 +178,7 @@ static void exact_factors(const job *j, float *scratch)
                                                          ADCGS_STEP_INDEX_MAX));
 }
 
-/** One network on one tile: forward, bits, backward; dx accumulates [in][64] of the input's gradient. */
+/** One network on one tile: forward, bits, backward; dx accumulates the gradient of the input, [in][64]. */
 static void rate_net(const job *j, int net, const float *x, float *dx, const coded *c, float *partial, float *scratch)
 {
     const adcgs_train_dsp *dsp = &j->p->dsp;
@@ -203,7 +202,7 @@ static void rate_net(const job *j, int net, const float *x, float *dx, const cod
     dsp->dense.dense(dx, dx, NULL, m->turn, (size_t)m->width, t.dz, m->in[0], m->width);
 }
 
-/** The way back from the chunks of a primitive's f_g that are inputs: `before` rows, `per` a chunk. */
+/** Propagates gradients to the chunks of a primitive's f_g that are inputs: `before` rows, `per` in a chunk. */
 static void fg_context_back(const job *j, int k, const float *dx, int before, int per)
 {
     const int ng = j->f->params.n_fg;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Neighbours move together: neighbourhoods, energy and gradient. */
+/** \file Rigidity: neighbourhoods, energy and gradient. */
 #include "fmodel/rigidity.h"
 
 #include "fmodel/pass_layout.h"
@@ -9,7 +9,7 @@
 
 enum { NEAR = ADCGS_RIGIDITY_NEAR, PULL_ROWS = 12 };
 
-/** Stretch below which the energy is quadratic: parts that slide past each other may part at a bounded price. */
+/** Stretch below which the energy is quadratic. Above it the cost grows slowly, so that parts may slide past each other. */
 #define SOFT 0.05f
 
 /* ---- Neighbourhoods ---- */
@@ -17,10 +17,10 @@ enum { NEAR = ADCGS_RIGIDITY_NEAR, PULL_ROWS = 12 };
 typedef struct near_job {
     const adcgs_fmodel *f;
     adcgs_rigidity *rigid;
-    const uint64_t *along; /* [n] x and number of each anchor, sorted: who is near lies near there, too */
+    const uint64_t *along; /* [n] x and index of each anchor, sorted; near anchors are near in this order */
 } near_job;
 
-/** Put j into a list kept sorted by key, smallest first, then by number: the order of asking does not matter. */
+/** Inserts j into a list sorted by key, then by index, so that the order of calls does not matter. */
 static void keep_best(uint64_t *best, int32_t *near, int n, uint64_t key, uint32_t j)
 {
     int k = n - 1;
@@ -34,7 +34,7 @@ static void keep_best(uint64_t *best, int32_t *near, int n, uint64_t key, uint32
     near[k] = (int32_t)j;
 }
 
-/** What an anchor j is to i: one of the closest, or of those within reach one that the lottery draws. */
+/** Offers anchor j to the neighbours of i: to the closest, and within reach to a random selection. */
 static void consider(const adcgs_fmodel *f, uint32_t i, uint32_t j, uint64_t reach2, uint64_t best[NEAR], int32_t near[NEAR])
 {
     uint64_t d = 0;
@@ -48,7 +48,7 @@ static void consider(const adcgs_fmodel *f, uint32_t i, uint32_t j, uint64_t rea
                   adcgs_random64(1, i, j), j);
 }
 
-/** The closest, and of those within reach the ones that a fixed lottery draws; rank: the anchor's place along x. */
+/** Finds the closest anchors, and a fixed random selection of those within reach. rank: the anchor's rank along x. */
 static void find_near(const near_job *job, uint32_t rank)
 {
     const adcgs_fmodel *f = job->f;
@@ -115,7 +115,7 @@ adcgs_status adcgs_rigidity_build(adcgs_rigidity *rigid, const adcgs_fmodel *f, 
 
 /* ---- Energy ---- */
 
-/** R - I of an anchor, row by row; its three numbers lie 64 apart, NULL for none. */
+/** R - I of an anchor, row by row. r: its three rotation parameters, 64 apart; NULL: none. */
 static void turn_of(const float *r, float m[9])
 {
     if (!r) {
@@ -139,7 +139,7 @@ static const float *omega_of(const adcgs_pass *p, const adcgs_fmodel *f, uint32_
     return adcgs_pass_act(p, f, i / ADCGS_LANES).omega_out + i % ADCGS_LANES;
 }
 
-/** One pair's energy; its force on j into force. y: place of j, 64 apart; v: from i to j. */
+/** Energy of a pair; force: its force on j. y: position of j, 64 apart; v: from i to j. */
 static float pair(const float *y, const float *di, const float *dj, const float m[9], const float n[9], const float v[3],
                   float force[3])
 {
@@ -157,7 +157,7 @@ static float pair(const float *y, const float *di, const float *dj, const float 
     return SOFT * logf(soft);
 }
 
-/** Add a force at y on a transformation: its way takes it, its matrix takes it times y. */
+/** Adds a force at y to the gradient of a transformation: of its translation, and of its matrix, which multiplies y. */
 static void add_force(float *pull, const float force[3], const float *y, float scale)
 {
     for (int a = 0; a < 3; a++) {

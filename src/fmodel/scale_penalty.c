@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Price of size. */
+/** \file Scale penalty. */
 #include "fmodel/scale_penalty.h"
 
 #include <math.h>
 
-/* Nothing is nearer than this to where it is seen from, scene units. */
+/* Minimum distance of a primitive from a viewpoint, scene units. */
 static const float NEAREST = 0.05f;
-/* Primitives that look for their viewpoint together. */
+/* Number of primitives processed together in the search for viewpoints. */
 enum { PIECE = 64 };
 
-/* What is fainter is not there, as what has not come to life yet. */
+/* Minimum opacity; fainter primitives, such as those outside their lifetime, do not count. */
 static const float THERE = 1e-6f;
 
 static float distance2(const float a[3], const float b[3])
@@ -17,7 +17,7 @@ static float distance2(const float a[3], const float b[3])
     return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
 }
 
-/** Half-way from a camera to the nearest other one, then the nearest but that. */
+/** Adds the midpoints between a camera and its two nearest other cameras. */
 static void add_between(adcgs_viewpoints *p, uint32_t n, uint32_t i)
 {
     uint32_t best[2] = { i, i };
@@ -63,8 +63,8 @@ void adcgs_viewpoints_clear(adcgs_viewpoints *p)
 }
 
 /**
- * How much larger areas look from the nearest viewpoint than at distance 1, for some primitives from first on; 1 where no
- * viewpoints are. Primitives are the inner loop, and no fminf() is asked for NaN: so the compiler makes vectors of it.
+ * Scale of areas as seen from the nearest viewpoint relative to distance 1, for `some` primitives from `first`; 1 without
+ * viewpoints. The inner loop is over primitives, and avoids fminf() with its NaN rules, so that compilers can vectorise it.
  */
 static void nearness(float near[PIECE], const adcgs_viewpoints *p, const adcgs_primitives *primitives, uint32_t first,
                      uint32_t some)

@@ -1,30 +1,30 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Price of size. Large primitives cost every frame that is ever drawn, and few cameras do not keep them from floating
- * where nothing is, least of all before their own eyes: what shows as well when it is smaller should be smaller. A term of the
- * training loss alone; a stream knows nothing of it. Prices of volume are in Lombardi et al. 2021, Mixture of volumetric
- * primitives, SIGGRAPH, and Lu et al. 2024, Scaffold-GS, CVPR.
+ * Scale penalty. Large primitives cost time in every rendered frame. With few cameras they also float in empty space, above all
+ * in front of the cameras. So a primitive should be small if the image allows it. The penalty is part of the training loss only,
+ * not of a stream. Volume penalties are in Lombardi et al. 2021, Mixture of volumetric primitives, SIGGRAPH, and Lu et al. 2024,
+ * Scaffold-GS, CVPR.
  */
 #ifndef ADCGS_FMODEL_SCALE_PENALTY_H
 #define ADCGS_FMODEL_SCALE_PENALTY_H
 
 #include "grad/raster.h"
 
-/** Where a scene is likely to be seen from. Zero-initialise before use. */
+/** Likely viewpoints of a scene. Zero-initialise before use. */
 typedef struct adcgs_viewpoints {
     uint32_t n;
     float (*x)[3]; /**< scene units */
 } adcgs_viewpoints;
 
-/** The cameras (equal ones once), and half-way from each to the two that are nearest. */
+/** The cameras (duplicates once), and the midpoints between each camera and its two nearest others. */
 adcgs_status adcgs_viewpoints_create(adcgs_viewpoints *viewpoints, const float (*camera)[3], uint32_t n_cameras,
                                      adcgs_error *error);
 void adcgs_viewpoints_clear(adcgs_viewpoints *viewpoints);
 
 /**
- * The price is weight times the mean, over the primitives that there are, of the area (xy + yz + zx) / 3 of their standard
- * deviations x, y, z in scene units, as large as it looks from the nearest viewpoint: over the square of the distance. Without
- * viewpoints all are at distance 1. Adds its gradient by the scales to scale[3] and returns it.
+ * Penalty: weight times the mean area (xy + yz + zx) / 3 of the primitives' standard deviations x, y, z in scene units, divided
+ * by the squared distance from the nearest viewpoint. Without viewpoints the distance is 1. Transparent primitives do not count.
+ * Adds its gradient with respect to the scales to scale[3], and returns the penalty.
  */
 double adcgs_scale_penalty(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
                         float *const scale[3]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Mean of a model's parameters. */
+/** \file Running mean of a model's parameters. */
 #include "fmodel/weight_average.h"
 
 static size_t count(const adcgs_fmodel *f)
@@ -24,7 +24,7 @@ adcgs_status adcgs_weight_average_add(adcgs_weight_average *a, const adcgs_fmode
 {
     if (a->n == 0 || a->size != count(f))
         ADCGS_TRY(adcgs_weight_average_begin(a, f, error));
-    const float share = 1 / (float)++a->n; /* 1 at first: what does not change is its own mean, to the bit */
+    const float share = 1 / (float)++a->n; /* 1 at first, so that a constant parameter is its own mean, to the bit */
     float *mean = a->mean;
     for (int i = 0; i < ADCGS_P_COUNT; mean += f->param[i++].n)
         for (size_t j = 0; j < f->param[i].n; j++)

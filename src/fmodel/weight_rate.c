@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Bits of networks' weights and their gradient. */
+/** \file Bits of the networks' weights, and their gradient. */
 #include "fmodel/weight_rate.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 #define LOG2_E 1.44269504f
 #define COLUMNS_MAX ADCGS_NET_INPUTS_MAX
 
-/** A tensor [rows][cols]. `round`: magnitudes below it count by their squares, so that there is a gradient at 0. */
+/** A tensor [rows][cols]. `round`: magnitudes below it count quadratically, so that there is a gradient at 0. */
 typedef struct tensor {
     const float *w;
     float *g; /**< or NULL */
@@ -37,8 +37,9 @@ static float row_mean(const tensor *t, const float *w)
 }
 
 /**
- * One row; column: mean magnitudes. A weight of magnitude a under a density of width b costs log2(b / width) + a / (b ln 2), and
- * b is half its row's mean and half its column's, plus the width: `by_width` collects by column how the bits change with b.
+ * Bits of one row; column: mean magnitudes of the columns. A weight of magnitude a under a density of width b costs log2(b /
+ * width) + a / (b ln 2). b is half its row's mean plus half its column's plus the width. by_width accumulates, per column, the
+ * derivative of the bits with respect to b.
  */
 static double rate_row(const tensor *t, const float *w, float *g, const float *column, float *by_width, float scale)
 {
