@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Depth distortion: its pictures, energy and gradient. */
+/** \file Depth distortion: its images, energy and gradient. */
 #include "grad/distortion.h"
 
 #include <math.h>
 
 static const float black[3] = { 0, 0, 0 };
-/** Of a pixel that hardly anything covers: below, its variance means nothing. */
+/** Minimum coverage of a pixel; below it, the variance of depth is meaningless. */
 static const float COVER_LEAST = 0.01f;
 
 void adcgs_distortion_clear(adcgs_distortion *d)
@@ -33,7 +33,10 @@ static adcgs_status make_room(adcgs_distortion *d, size_t slots, size_t pixels, 
     return ADCGS_OK;
 }
 
-/** 1 / z of all primitives that can be seen into inverse, 0 of the others; returns the mean of the former, 0 without any. */
+/**
+ * Sets inverse to 1 / z of all visible primitives, and to 0 for the others. Returns the mean over the visible ones, 0 without
+ * any.
+ */
 static float inverse_depths(const adcgs_primitives *p, const adcgs_view *v, float *inverse)
 {
     double sum = 0;
@@ -49,7 +52,7 @@ static float inverse_depths(const adcgs_primitives *p, const adcgs_view *v, floa
     return seen ? (float)(sum / (double)seen) : 0;
 }
 
-/** The energy of what is drawn, image [3][pixels]: sums of u, of u^2, and of 1. grad: by these, times weight. */
+/** Energy of the rendered sums, image [3][pixels]: of u, of u^2, and of 1. grad: gradient with respect to these, times weight. */
 static double energy_of(const float *image, float *grad, size_t pixels, float weight)
 {
     const float soft = ADCGS_DISTORTION_SOFT * ADCGS_DISTORTION_SOFT, each = weight / (float)pixels;

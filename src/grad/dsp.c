@@ -31,14 +31,14 @@ adcgs_status adcgs_bf16_check(adcgs_cpu_level level, adcgs_error *error)
 {
 #ifdef HAVE_AVX512BF16
     if (!__builtin_cpu_supports("avx512bf16"))
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "networks in bf16 need AVX512-BF16, which this CPU lacks");
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "bf16 training needs AVX512-BF16, which this CPU lacks");
     if (level < ADCGS_CPU_AVX512)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "networks in bf16 need kernels of CPU level avx512: these are of %s",
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "bf16 training needs kernels of CPU level avx512: these are of %s",
                           adcgs_cpu_name(level));
     return ADCGS_OK;
 #else
     (void)level;
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "networks in bf16 need AVX512-BF16, for which this build has no kernels");
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "bf16 training needs AVX512-BF16, for which this build has no kernels");
 #endif
 }
 

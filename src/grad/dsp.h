@@ -14,24 +14,24 @@
 /** Outputs of F_theta per primitive, of F_omega per anchor, of F_varpi per primitive. */
 enum { ADCGS_THETA_OUT = 14, ADCGS_OMEGA_OUT = 12, ADCGS_VARPI_OUT = 4 };
 
-/** Where a body is at a time: what lies at x goes to R(q) (x - centre) + to. */
+/** Pose of a rigid body at a time: x maps to R(q) (x - centre) + to. */
 typedef struct adcgs_body_place {
     float q[4], centre[3], to[3];
 } adcgs_body_place;
 /**
- * Sums over the anchors of a body of the gradients of its pose: of the rotation matrix, which takes places; of the quaternion,
- * which turns primitives; of the way.
+ * Gradients of a body's pose, summed over its anchors: of the rotation matrix, which moves positions; of the quaternion, which
+ * rotates primitives; of the translation.
  */
 typedef struct adcgs_body_grad {
     float m[9], q[4], way[3];
 } adcgs_body_grad;
 
-/** One group of 64 anchors on its way to 64*k primitives. */
+/** One group of 64 anchors and its 64*k primitives. */
 typedef struct adcgs_group_io {
     int k;
     const float *x;      /**< [3][64] anchor positions */
-    const float *sigma;  /**< [6][64]; with spans [11][64] */
-    int spans;           /**< those are in use, at time t */
+    const float *sigma;  /**< [6][64]; with lifetimes [11][64] */
+    int spans;           /**< 1: lifetimes are in use, at time t */
     float t;
     const float *colour; /**< [3][64] */
     const float *theta;  /**< [k][14][64] */
@@ -40,36 +40,36 @@ typedef struct adcgs_group_io {
     const float *moving; /**< [64] 1 for moving, 0 for static anchors; read when omega or varpi is given, or spans */
     const float *keep;   /**< [k][64] 1 for primitives that exist, else 0 */
     int rotation;        /**< omega's outputs 9..11 are used */
-    const uint8_t *body; /**< [64] the body that takes an anchor along, from 1, 0: none; or NULL. Of those that move */
+    const uint8_t *body; /**< [64] rigid body of a moving anchor, from 1; 0: none; or NULL */
     const adcgs_body_place *pose; /**< [bodies] */
     float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] each */
 } adcgs_group_io;
 
-/** Gradients of the same: in from the rasteriser, out to the networks. */
+/** Gradients of the same: input from the rasteriser, output for the networks. */
 typedef struct adcgs_group_grad {
     const float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] */
     float *sigma, *colour;        /**< as io's, accumulated */
     float *theta, *omega, *varpi; /**< overwritten; omega, varpi may be NULL as above */
-    const float *pull;            /**< [12][64] more gradient of omega's way and rotation matrix, or NULL */
-    adcgs_body_grad *body;        /**< [bodies], accumulated; where io has bodies */
+    const float *pull;            /**< [12][64] additional gradient of omega's translation and rotation matrix, or NULL */
+    adcgs_body_grad *body;        /**< [bodies], accumulated; if io has bodies */
 } adcgs_group_grad;
 
-/** What the coder's tables say about a value of magnitude `a` at a sigma level. */
+/** Cost of a value of magnitude `a` at a sigma level, by the coder's tables. */
 typedef struct adcgs_rate_cell {
-    float bits;     /**< that coding it takes; at level 0 nothing is coded */
-    float by_value; /**< their derivative by the magnitude */
-    float by_level; /**< and by the level */
+    float bits;     /**< coded bits; at level 0 nothing is coded */
+    float by_value; /**< derivative with respect to the magnitude */
+    float by_level; /**< derivative with respect to the level */
 } adcgs_rate_cell;
 
-/** Largest magnitude of a quantised value; one more, so that a value may lie between two cells. */
+/** Largest magnitude of a quantised value; one more cell, so that a value may lie between two cells. */
 enum { ADCGS_LEVEL_MAX = 500, ADCGS_RATE_CELLS = ADCGS_LEVEL_MAX + 2 };
 typedef struct adcgs_rate_table {
     adcgs_rate_cell cell[ADCGS_SIGMA_LEVELS][ADCGS_RATE_CELLS];
 } adcgs_rate_table;
-/** Fill in the table of a density shape. */
+/** Fills in the table of a density shape. */
 void adcgs_rate_table_init(adcgs_rate_table *table, int shape);
 
-/** Rows of 64 values to be coded and what an entropy network says about them. */
+/** Rows of 64 values to code, with an entropy network's outputs. */
 typedef struct adcgs_rate_io {
     int n;
     const float *y, *step;  /**< values [n][64], steps [n] */
@@ -77,12 +77,12 @@ typedef struct adcgs_rate_io {
     const float *weight;    /**< [64] of each lane, 0 for padding */
     float scale;
     float *dy, *dmu, *dsi;  /**< dy += scale*dbits/dy; dmu, dsi overwritten with scale*dbits/dmu, /dsi */
-    float *x;               /**< receives the values as inputs of networks that follow; may be NULL */
+    float *x;               /**< receives the values as inputs of later networks; may be NULL */
     const adcgs_rate_table *table; /**< rate_exact: of the group's shape */
     float *mean;            /**< rate_exact: receives the means, packed */
 } adcgs_rate_io;
 
-/** Weights of a residual layer, [n][n], and the same as adcgs_train_dsp.pack leaves them, if there is such a function. */
+/** Weights of a residual layer, [n][n], and their form after adcgs_train_dsp.pack, if that exists. */
 typedef struct adcgs_square {
     int n;
     const float *w;
@@ -106,40 +106,40 @@ typedef struct adcgs_train_dsp {
     /** dz[i] *= h[i] < 0 ? 2^-6 : 1 over n rows of 64; h: the leaky ReLU's output, whose sign is its input's. */
     void (*lrelu_back)(float *dz, const float *h, int n);
     /**
-     * A residual hidden layer: with z = bias + w x, h = x + leaky ReLU of z. Bit l of below[o]: lane l of z[o] is below 0. dsp:
+     * A residual hidden layer: with z = bias + w x, h = x + leaky ReLU of z. Bit l of below[o]: lane l of z[o] is negative. dsp:
      * these kernels.
      */
     void (*residual)(const struct adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
                      const float *x);
     /**
-     * The way back: dz = dh times the leaky ReLU's slope, dx = dh + turn dz; turn: w transposed. dx may be dh. io: NULL, or
-     * the layer's x and, behind it, its h, for which weight gradients ask next: they may be fetched meanwhile.
+     * Backward: dz = dh times the leaky ReLU's slope, dx = dh + turn dz; turn: w transposed. dx may be dh. io: NULL, or the
+     * layer's x followed by its h, which the weight gradients need next, for prefetching.
      */
     void (*residual_back)(const struct adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below,
                           const adcgs_square *turn, const float *dh, const float *io);
-    /** Weights [n][n] to adcgs_square_words(n) aligned words as the two above want them; NULL if they want none. */
+    /** Packs weights [n][n] into adcgs_square_words(n) aligned words for the two functions above; NULL if they need none. */
     void (*pack)(uint32_t *to, const float *w, int n);
     /** y = p + step[row] * u, u uniform in [-1/2, 1/2) from (seed, position): additive quantisation noise, n rows of 64. */
     void (*noise)(float *y, const float *p, const float *step, int n, uint32_t seed);
-    /** y: what the coder makes of p, rounded in steps around the predicted mean mu; see adcgs_mean_pack(). */
+    /** y: the coder's value of p, rounded in steps around the predicted mean mu; see adcgs_mean_pack(). */
     void (*round)(float *y, const float *p, const float *step, const float *mu, int n);
     void (*primitives)(const adcgs_group_io *io);
     void (*primitives_back)(const adcgs_group_io *io, const adcgs_group_grad *grad);
     /**
-     * n rows of a hidden layer: h = leaky ReLU of z, plus in where it is not NULL; below as in residual. hidden_exact, for
-     * entropy networks: z, in on the integer networks' lattices, and h what they compute.
+     * n rows of a hidden layer: h = leaky ReLU of z, plus `in` unless NULL; below as in residual. hidden_exact, for entropy
+     * networks: z and in are on the integer networks' lattices, and h is their exact result.
      */
     void (*hidden)(float *h, uint64_t *below, const float *z, const float *in, int n);
     void (*hidden_exact)(float *h, uint64_t *below, const float *z, const float *in, int n);
     /**
-     * Bits of values and their gradients; returns the weighted sum of bits. rate: of values as they are, noisy ones that is,
-     * under a Gaussian. rate_exact: as the coder does it, with the gradients straight through every rounding.
+     * Bits of values and their gradients; returns the weighted sum of bits. rate: of noisy values under a Gaussian. rate_exact:
+     * as in the coder, with gradients straight through every rounding.
      */
     double (*rate)(const adcgs_rate_io *io);
     double (*rate_exact)(const adcgs_rate_io *io);
     /**
-     * Adam step on n parameters; c1 = 1/(1-beta1^t), c2 = 1/(1-beta2^t); clears g. No step is longer than lr: where gradients
-     * grow at once, as when pictures become larger, their mean square is behind for a thousand steps.
+     * Adam step on n parameters; c1 = 1/(1-beta1^t), c2 = 1/(1-beta2^t); clears g. No step is longer than lr: when gradients grow
+     * suddenly, as at an increase of the image size, their mean square lags for a thousand steps.
      */
     void (*adam)(float *p, float *g, float *m, float *v, size_t n, float lr, float c1, float c2);
 } adcgs_train_dsp;
@@ -148,21 +148,21 @@ typedef struct adcgs_train_dsp {
 #define ADCGS_MU_GAIN 16.0f
 #define ADCGS_SI_GAIN 8.0f
 #define ADCGS_SI_CENTRE 32.0f
-#define ADCGS_STEP_GAIN 8.0f /**< E_q's twin yields octaves, the integer network eighths of them */
+#define ADCGS_STEP_GAIN 8.0f /**< the output of E_q's twin is in octaves, of the integer network in eighths of octaves */
 
 /**
- * The integer networks in the twins' units: weights, biases and activations are multiples of 2^-ADCGS_E24_BITS, weights and
- * activations of magnitude at most ADCGS_E24_MAX of them; inputs, values in units of 16 steps, are so to a quarter of a step.
+ * The integer networks in the twins' units. Weights, biases and activations are multiples of 2^-ADCGS_E24_BITS; weights and
+ * activations are at most ADCGS_E24_MAX of them. Inputs are values in units of 16 steps, and multiples of a quarter of a step.
  */
 enum { ADCGS_E24_BITS = 6, ADCGS_E24_MAX = 2047, ADCGS_E24_INPUT_SHIFT = 4 };
 
-/** x, or the nearer bound; lo where x is no number. */
+/** x clamped to [lo, hi]; lo for NaN. */
 static inline float adcgs_bounded(float x, float lo, float hi)
 {
     const float y = x > lo ? x : lo;
     return y < hi ? y : hi;
 }
-/** A mean in 1/64 step as the passes keep it: marked where the sigma level is 0, so that the mean is all that is coded. */
+/** A mean in 1/64 step as stored by the passes: marked if the sigma level is 0, at which only the mean is coded. */
 #define ADCGS_MEAN_ALONE 0x1p18f
 static inline float adcgs_mean_pack(float mean, int alone)
 {
@@ -173,7 +173,7 @@ static inline int adcgs_mean_alone(float packed)
     return packed > 0.5f * ADCGS_MEAN_ALONE;
 }
 
-/** What the coder makes of the twins' outputs: the mean in 1/64 step, the sigma level. */
+/** The coder's values of the twins' outputs: the mean in 1/64 step, the sigma level. */
 static inline float adcgs_coder_mean(float mu)
 {
     return adcgs_bounded(floorf(64 * ADCGS_MU_GAIN * mu + 0.5f), -32767, 32767);
@@ -185,9 +185,9 @@ static inline float adcgs_coder_level(float si)
 
 void adcgs_train_dsp_init(adcgs_train_dsp *dsp, adcgs_cpu_level level);
 
-/** Whether kernels of this level can have layers in bf16: ADCGS_ERR_UNSUPPORTED names what the CPU or the build lacks. */
+/** Checks if kernels of this level support bf16: ADCGS_ERR_UNSUPPORTED names the feature that the CPU or the build lacks. */
 adcgs_status adcgs_bf16_check(adcgs_cpu_level level, adcgs_error *error);
-/** The kernels of a level; where the check passes, layers and weight gradients with factors in bf16 and sums in binary32. */
+/** The kernels of a level; if the check passes, layers and weight gradients use bf16 factors and binary32 sums. */
 void adcgs_train_dsp_init_bf16(adcgs_train_dsp *dsp, adcgs_cpu_level level);
 
 #endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/**
- * \file
- * Layers of networks with factors in bf16 and sums in binary32. Both products, layers' and weight gradients', are one: rows of
- * pairs of factors by pairs of rows of 64 columns. A layer's pairs lie along its inputs, a weight gradient's along the lanes.
+/** \file
+ * Layers of networks with bf16 factors and binary32 sums. The products of layers and of weight gradients share one kernel: rows
+ * of pairs of factors by pairs of rows of 64 columns. A layer's pairs lie along its inputs, a weight gradient's along the lanes.
  */
 #include "grad/dsp.h"
 
@@ -12,7 +11,7 @@
 #define LANES ADCGS_LANES
 #define INLINE static inline __attribute__((always_inline))
 
-/* Rows and vectors of columns whose sums stay in registers; pairs whose columns stay in the first cache; outputs at a time. */
+/* ROWS, COLS: rows and vectors of columns whose sums stay in registers; PAIRS: pairs whose columns stay in the L1 cache. */
 enum { ROWS = 6, COLS = 4, VN = 16, PAIRS = 64, OUTPUTS = 256 };
 
 /** A product's right side: pairs of rows of 64 columns. */
@@ -21,8 +20,8 @@ typedef struct columns {
 } columns;
 
 /**
- * Its sums: at to, rows ld apart, n columns in use. They begin with what is at from, else with bias, else with 0. If in is given,
- * what is stored is in plus the leaky ReLU of the sums, rows of 64, and below says which sums are below 0.
+ * Its sums: in `to`, with rows ld apart and n columns in use. They start from `from`, else from bias, else from 0. If `in` is
+ * given, the result is `in` plus the leaky ReLU of the sums, in rows of 64, and `below` marks negative sums.
  */
 typedef struct sums {
     float *to;
@@ -45,7 +44,7 @@ static inline __m512 slope(__m512 x, __mmask16 below)
 
 /* ---- The product ---- */
 
-/** The end of a residual layer, for one row. */
+/** End of a residual layer, for one row. */
 INLINE void store_residual(const sums *s, int r, const __m512 acc[COLS])
 {
     uint64_t below = 0;
@@ -122,14 +121,14 @@ static void product(int rows, const sums *s, const uint32_t *a, size_t lda, cons
     }
 }
 
-/** Rows are dealt out evenly: a rest of one or two would leave the multipliers idle. */
+/** Divides rows evenly: a rest of one or two rows would leave the multipliers idle. */
 static int rows_next(int left)
 {
     const int tiles = (left + ROWS - 1) / ROWS;
     return (left + tiles - 1) / tiles;
 }
 
-/** Let rows of n numbers come to the first cache, or only to the second, while others are worked on. */
+/** Prefetches rows of n numbers into the L1 cache (cache 1) or the L2 cache. */
 INLINE void fetch(int cache, const float *from, size_t ld, int rows, int n)
 {
     for (int r = 0; r < rows; r++)
@@ -142,13 +141,13 @@ INLINE void fetch(int cache, const float *from, size_t ld, int rows, int n)
 
 /* ---- Layers ---- */
 
-/** 32 consecutive numbers, rounded. */
+/** Rounds 32 consecutive numbers. */
 static inline __m512i pair_up(__m512 low, __m512 high)
 {
     return (__m512i)_mm512_cvtne2ps_pbh(high, low);
 }
 
-/** Pairs of consecutive numbers of a row; behind the last comes 0. */
+/** Pairs of consecutive numbers of a row, padded with 0. */
 static inline void pack_row(uint32_t *to, const float *from, int n)
 {
     int i = 0;
@@ -173,20 +172,20 @@ static void pack_inputs(columns *to, const float *x, int n)
         }
 }
 
-/** Words of a row that is packed as a whole. */
+/** Words of a packed row. */
 static inline size_t words_of(int n)
 {
     return ((size_t)n + 31) / 32 * 16;
 }
 
-/** Some rows of weights for the inputs from i on: in w, or packed, if that is not NULL. */
+/** Some rows of weights for the inputs from i on: in w, or in packed if it is not NULL. */
 typedef struct weights {
     const float *w;
     size_t ldw;
     const uint32_t *packed;
 } weights;
 
-/** One layer: y->from and the rest are of its first row. soon: NULL or 2 n_out rows of 64 that will be asked for next. */
+/** One layer. y: of its first row. soon: NULL, or 2 n_out rows of 64 to prefetch for the next step. */
 static void layer(const sums *y, const weights *w, const float *x, int n_out, int n_in, const float *soon)
 {
     alignas(64) uint32_t some[ROWS][PAIRS];
@@ -248,7 +247,7 @@ static void pack(uint32_t *to, const float *w, int n)
 
 /* ---- Weight gradients ---- */
 
-/** 16 rows of 16 become 16 columns: in each round halves of the matrix are interleaved. */
+/** Transposes 16 rows of 16. Each round interleaves halves of the matrix. */
 INLINE void turn(__m512i r[VN])
 {
     const __m512i low = _mm512_set_epi32(23, 7, 22, 6, 21, 5, 20, 4, 19, 3, 18, 2, 17, 1, 16, 0);
@@ -267,7 +266,7 @@ INLINE void turn(__m512i r[VN])
     }
 }
 
-/** Pairs of lanes, each with its up to 64 inputs; the columns behind them are not used. */
+/** Pairs of lanes, each with up to 64 inputs; the columns after them are unused. */
 static void turn_inputs(columns *to, const float *x, int n)
 {
     for (int c = 0; c * VN < n; c++)

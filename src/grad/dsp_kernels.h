@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Bodies of the trainer's kernels. Included once per CPU level by a file that
- * defines ISA(name) and is compiled with that level's flags; the 64-lane loops
- * are written for the compiler's vectoriser, the weight gradient by hand.
+ * Bodies of the trainer's kernels. Included once per CPU level by a file that defines ISA(name) and is compiled with that level's
+ * flags. The 64-lane loops are written for the compiler's vectoriser, the weight gradient by hand.
  */
 #include "base/fmath.h"
 #include "grad/dsp.h"
@@ -60,11 +59,11 @@ typedef float vec;
 #define vslope(x, below) ((below) & 1 ? (x) * 0x1p-6f : (x))
 #endif
 
-/* Outputs and vectors of inputs whose products stay in registers while all lanes pass by. */
+/* Outputs and vectors of inputs whose products stay in registers during the loop over lanes. */
 enum { TILE_O = 6, TILE_V = VN == 16 ? 4 : 2, TILE_I = TILE_V * VN };
 
 #if VN > 1
-/** n of eight rows of eight lanes become eight lanes of eight rows; the rest is 0. */
+/** Transposes n of eight rows of eight lanes; the other rows count as 0. */
 static inline __attribute__((always_inline)) void turn_eight(float *to, const float *from, int n)
 {
     for (int half = 0; half < 2; half++, from += 4, to += 4 * TILE_I) {
@@ -140,7 +139,7 @@ static void bias_grad(float *gb, const float *dy, int n)
 }
 #endif
 
-/** Gradients of no weights' rows, ni of each in nv vectors, from lanes of their outputs dy[no][64] and inputs xt[64][TILE_I]. */
+/** Gradients of `no` weight rows, ni of each in nv vectors, from lanes of their outputs dy[no][64] and inputs xt[64][TILE_I]. */
 static inline __attribute__((always_inline)) void weight_tile(float *gw, size_t ldg, const float *dy, float xt[LANES][TILE_I],
                                                               int no, int nv, int ni)
 {
@@ -186,7 +185,7 @@ static inline __attribute__((always_inline)) void weight_rows(float *gw, size_t 
     }
 }
 
-/** Of n_out rows, dealt out evenly: a rest of one or two would leave the multipliers idle. */
+/** Divides n_out rows evenly: a rest of one or two would leave the multipliers idle. */
 static void weight_columns(float *gw, size_t ldg, const float *dy, float xt[LANES][TILE_I], int n_out, int ni)
 {
     const int groups = (n_out + TILE_O - 1) / TILE_O;
@@ -225,7 +224,7 @@ static void ISA(lrelu_back)(float *restrict dz, const float *restrict h, int n)
         dz[i] *= h[i] < 0 ? 0x1p-6f : 1.0f;
 }
 
-/** Which of a row's lanes are below 0. */
+/** Mask of the negative lanes of a row. */
 static inline uint64_t below_of(const float *row)
 {
     uint64_t below = 0;
@@ -234,7 +233,7 @@ static inline uint64_t below_of(const float *row)
     return below;
 }
 
-/* Few rows at a time, so that their sums stay in the first cache. */
+/* A few rows at a time, so that their sums stay in the L1 cache. */
 static void ISA(residual)(const adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
                           const float *x)
 {
@@ -289,18 +288,21 @@ static void ISA(round)(float *restrict y, const float *restrict p, const float *
     const float r##10 = 2 * (x * y + w * z), r##11 = 1 - 2 * (x * x + z * z), r##12 = 2 * (y * z - w * x);   \
     const float r##20 = 2 * (x * z - w * y), r##21 = 2 * (y * z + w * x), r##22 = 1 - 2 * (x * x + y * y)
 
-/** Anchor quantities all of a group's primitives share. */
+/** Values of an anchor shared by its primitives. */
 typedef struct anchor_terms {
     float extent[3][LANES], base[3][LANES]; /* exp(Sigma_v) */
     float move[3][LANES], grow[3][LANES], tint[3][LANES]; /* deltas of F_omega */
     float own[4][LANES];                    /* rotation by F_omega */
-    float q[4][LANES];                      /* and by the body: all of it */
-    float body[4][LANES], from[3][LANES];   /* the body's rotation; the way before it, as seen from the body's centre */
+    float q[4][LANES];                      /* total rotation, with the body's */
+    float body[4][LANES], from[3][LANES];   /* rotation of the body; translation before it, minus the body's centre */
     float norm[LANES];                      /* length of (1, r) */
-    float pace[LANES], u[LANES], presence[LANES]; /* of spans */
+    float pace[LANES], u[LANES], presence[LANES]; /* of lifetimes */
 } anchor_terms;
 
-/** Where an anchor is in its span: it goes on at its velocity, and is there as a flat top with steep ends. */
+/**
+ * Position and presence of an anchor in its lifetime: it moves with its velocity, and its presence has a flat top with steep
+ * ends.
+ */
 static void ISA(span_forward)(anchor_terms *a, const adcgs_group_io *io)
 {
     for (int l = 0; l < LANES; l++)
@@ -319,7 +321,7 @@ static void ISA(span_forward)(anchor_terms *a, const adcgs_group_io *io)
             a->move[c][l] += io->sigma[(ADCGS_SPAN_VELOCITY + c) * LANES + l] * 0.125f * a->u[l] * io->moving[l];
 }
 
-/* c = a b, and conj(a) b, and a conj(b), of quaternions. */
+/* Products of quaternions: a b, conj(a) b, or a conj(b). */
 #define PRODUCT(c, a, b, i, j)                                                                        \
     const float c##0 = a##0 * b##0 - (i) * (j) * (a##1 * b##1 + a##2 * b##2 + a##3 * b##3);           \
     const float c##1 = (j) * a##0 * b##1 + (i) * a##1 * b##0 + (i) * (j) * (a##2 * b##3 - a##3 * b##2); \
@@ -327,7 +329,7 @@ static void ISA(span_forward)(anchor_terms *a, const adcgs_group_io *io)
     const float c##3 = (j) * a##0 * b##3 + (i) * a##3 * b##0 + (i) * (j) * (a##1 * b##2 - a##2 * b##1)
 #define QUATERNION(name, from) const float name##0 = from[0][l], name##1 = from[1][l], name##2 = from[2][l], name##3 = from[3][l]
 
-/** Bodies take along the anchors that are theirs, turned and moved as they are. */
+/** Moves and rotates anchors with their rigid bodies. */
 static void ISA(body_forward)(anchor_terms *a, const adcgs_group_io *io)
 {
     float to[3][LANES];
@@ -440,7 +442,7 @@ static void ISA(primitives)(const adcgs_group_io *io)
     }
 }
 
-/** Sums over a group's primitives of what flows back into its anchors. */
+/** Gradients of the anchors, summed over a group's primitives. */
 typedef struct anchor_grads {
     float move[3][LANES], grow[3][LANES], tint[3][LANES];
     float m[9][LANES]; /* sum of dL/dmean (x) canonical mean: gradient of the rotation matrix */
@@ -552,8 +554,8 @@ static void ISA(primitive_rest_back)(const anchor_terms *a, anchor_grads *s, con
 }
 
 /**
- * From the gradients of all that moves an anchor to those of what its body takes along, in place, and to sums for the body. With
- * R = B O of the body and F_omega, by B: dR O^T; by O: B^T dR; quaternions likewise.
+ * Converts the gradients of an anchor's total motion to those of the motion before its body, in place, and adds to the sums for
+ * the body. With R = B O of the body and F_omega: for B, dR O^T; for O, B^T dR; quaternions likewise.
  */
 static void ISA(body_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g)
 {
@@ -664,7 +666,7 @@ static void ISA(primitives_back)(const adcgs_group_io *io, const adcgs_group_gra
         ISA(body_back)(&a, &s, io, grad);
     if (io->spans)
         ISA(span_back)(&a, &s, io, grad);
-    for (int i = 0; pull && i < 12 * LANES; i++) /* of F_omega alone */
+    for (int i = 0; pull && i < 12 * LANES; i++) /* for F_omega only */
         (i < 3 * LANES ? s.move[i / LANES] : s.m[i / LANES - 3])[i % LANES] += pull[i];
     if (io->omega)
         ISA(omega_back)(&a, &s, io, grad);
@@ -681,7 +683,7 @@ static inline float tail(float x, float *density)
     return p * *density;
 }
 
-/** One row of values: bits of each lane; v in steps from the mean, its derivative into gv, that of the level into gs. */
+/** One row of values: bits of each lane; v in steps from the mean; gv, gs: derivatives with respect to v and to the level. */
 static void ISA(rate_row)(float *restrict bits, float *restrict gv, float *restrict gs, const float *restrict v_row,
                           const float *restrict level_row)
 {
@@ -694,7 +696,7 @@ static void ISA(rate_row)(float *restrict bits, float *restrict gv, float *restr
         float fa, fb;
         const float qa = tail(a < 0 ? -a : a, &fa), qb = tail(b, &fb);
         const float inside = (a < 0 ? 1 - qa : qa) - qb;
-        /* a thin heavy tail stands for the escape code and keeps gradients alive far out */
+        /* a thin heavy tail models the escape code and keeps gradients nonzero far out */
         const float width = 1 + 4 / inv_sigma, far = 1 / (width * width + av * av), heavy = 0x1p-14f * width * far;
         const float p = inside * (1 - 0x1p-12f) + heavy + 1e-12f, factor = -1.44269504f / p;
         const float dp_dv = (fb - fa) * inv_sigma * (1 - 0x1p-12f) - 2 * heavy * av * far;
@@ -706,12 +708,14 @@ static void ISA(rate_row)(float *restrict bits, float *restrict gv, float *restr
     }
 }
 
-/** The same as the coder has it, from the table's cells of each lane's level. */
+/** The same with the coder's exact costs, from the table cells of each lane's level. */
 static void ISA(rate_row_exact)(float *restrict bits, float *restrict gv, float *restrict gs, const float *restrict v_row,
                                 const float *restrict n, const float *restrict level, const adcgs_rate_cell *restrict cells)
 {
     for (int l = 0; l < LANES; l++) {
-        /* The level is judged by the value as it is coded; the mean and the value by where the value really lies. */
+        /*
+         * The derivative with respect to the level uses the coded value; that with respect to the value uses the unrounded one.
+         */
         const float v = v_row[l], a = v < 0 ? -v : v, floor_a = floorf(a);
         const int at = (int)level[l] * ADCGS_RATE_CELLS, below = at + (int)floor_a;
         const float slope = cells[below].by_value + (a - floor_a) * (cells[below + 1].by_value - cells[below].by_value);
@@ -721,7 +725,7 @@ static void ISA(rate_row_exact)(float *restrict bits, float *restrict gv, float 
     }
 }
 
-/** Bits and derivatives of a row of io to its sum and gradients; raw: the level before it was bounded. */
+/** Adds bits and derivatives of a row of io to its sum and gradients; raw: the level before clamping. */
 static float ISA(rate_pass_on)(const adcgs_rate_io *io, int i, const float *restrict bits, const float *restrict gv,
                                const float *restrict gs, const float *restrict raw)
 {
@@ -731,7 +735,7 @@ static float ISA(rate_pass_on)(const adcgs_rate_io *io, int i, const float *rest
     float sum = 0;
     for (int l = 0; l < LANES; l++) {
         const float v = gv[l] * weight[l] * scale, s = gs[l] * weight[l] * scale * ADCGS_SI_GAIN;
-        /* let it come back inside, not go further out */
+        /* a level out of range may only move back */
         const int outwards = ((raw[l] < 0) & (s > 0)) | ((raw[l] > 63) & (s < 0));
         dy[l] += v * inverse;
         dmu[l] = -v * ADCGS_MU_GAIN;
@@ -761,7 +765,7 @@ static double ISA(rate)(const adcgs_rate_io *io)
     return total;
 }
 
-/* ---- The same as the coder does it: integers in float's clothes, and its tables. ---- */
+/* ---- Exact rate: the coder's integers as floats, and its tables. ---- */
 
 /** shr(v, s) of the specification for v = x * 2^s. */
 static inline float nearest(float x)
@@ -782,7 +786,7 @@ static void ISA(hidden_exact)(float *restrict h, uint64_t *restrict below, const
 {
     const float up = 1 << ADCGS_E24_BITS, down = 1 / up, most = ADCGS_E24_MAX * down;
     for (int i = 0; i < n * LANES; i++) {
-        /* The leaky ReLU is the larger of the two. */
+        /* The leaky ReLU is the maximum of the two. */
         const float v = nearest(z[i] * up), slow = nearest(v * 0x1p-6f), a = (v > slow ? v : slow) * down;
         h[i] = adcgs_bounded(in ? a + in[i] : a, -most, most);
     }
@@ -790,10 +794,10 @@ static void ISA(hidden_exact)(float *restrict h, uint64_t *restrict below, const
         below[i] = below_of(z + i * LANES);
 }
 
-/** A row of values as the coder sees them. */
+/** A row of values in the coder's form. */
 typedef struct exact_row {
     float mean[LANES], raw[LANES], level[LANES];
-    float v[LANES], n[LANES]; /* in steps from the mean; the same rounded, or 0 where nothing is coded */
+    float v[LANES], n[LANES]; /* in steps from the mean; the same rounded, or 0 if nothing is coded */
 } exact_row;
 
 static void ISA(exact_values)(exact_row *restrict r, const float *restrict y, const float *restrict mu, const float *restrict si,
@@ -810,7 +814,7 @@ static void ISA(exact_values)(exact_row *restrict r, const float *restrict y, co
     }
 }
 
-/** What the row is to networks that follow. */
+/** The row as input of later networks. */
 static void ISA(exact_inputs)(float *restrict x, const exact_row *restrict r)
 {
     const float down = 1.0f / (1 << ADCGS_E24_BITS), most = ADCGS_E24_MAX * down, quarter = 1.0f / (1 << ADCGS_E24_INPUT_SHIFT);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The loss of an image: cuts it into strips, runs them on the pool, adds up in a fixed order. */
+/** \file The loss of an image: divides it into strips, runs them on the pool, and sums in a fixed order. */
 #include "config.h"
 
 #include "grad/loss.h"
@@ -67,7 +67,7 @@ static void run_strip(void *arg, int index, int thread)
     loss->kernel(&loss->strip[index], loss->scratch + thread);
 }
 
-/* Without SSIM: strip->first and count are rows here. */
+/* Without SSIM: strip->first and count are rows. */
 static void run_band(void *arg, int index, int thread)
 {
     adcgs_loss *const loss = arg;
@@ -88,14 +88,14 @@ static void run_band(void *arg, int index, int thread)
     }
 }
 
-/* Cut `size` into units of at most `most`. Returns the size of a unit. */
+/* Divides `size` into units of at most `most`. Returns the size of a unit. */
 static int unit_size(int size, int most)
 {
     const int units = (size + most - 1) / most;
     return (size + units - 1) / units;
 }
 
-/* Stripes over a strip's columns and those that its windows see, within the image as far as it is wide enough. */
+/* Places stripes over a strip's columns and the columns of their windows, within the image if it is wide enough. */
 static void place_stripes(adcgs_loss_strip *s)
 {
     const int seen = ADCGS_MIN(s->count + 4 * ADCGS_LOSS_HALO, s->width), pairs = 2 * ADCGS_LOSS_LANES;

@@ -2,10 +2,10 @@
 /** \file
  * The training loss of an image, value and gradient in one pass:
  *   (1 - w) ((1 - q) |e| + q e^2 / (2 ADCGS_LOSS_EVEN)) + w (1 - SSIM),
- * the mean over all values, with e the error of one. The absolute error settles on the median over time, which of a thing that
- * passes by is what stands behind it; the squared one goes on pulling where the error is large. Both pull alike where it is
- * ADCGS_LOSS_EVEN. SSIM: 11x11 Gaussian window of sigma 1.5, zero padding, per channel, C1 = 0.01^2, C2 = 0.03^2 (as in Wang et
- * al. 2004 with range 1).
+ * the mean over all values, where e is the error of a value. The absolute error settles on the median over time, which is the
+ * background of a passing object. The squared error keeps its gradient where the error is large. Both have the same gradient at
+ * an error of ADCGS_LOSS_EVEN. SSIM: 11x11 Gaussian window of sigma 1.5, zero padding, per channel, C1 = 0.01^2, C2 = 0.03^2 (as
+ * in Wang et al. 2004 with range 1).
  */
 #ifndef ADCGS_GRAD_LOSS_H
 #define ADCGS_GRAD_LOSS_H
@@ -13,7 +13,7 @@
 #include "base/cpu.h"
 #include "base/pool.h"
 
-#define ADCGS_LOSS_EVEN 0.1f
+#define ADCGS_LOSS_EVEN 0.1f /**< error at which the absolute and the squared error have the same gradient */
 
 typedef struct adcgs_loss adcgs_loss;
 /** w and q above, 0..1. */
@@ -27,8 +27,8 @@ typedef struct adcgs_loss_value {
 adcgs_status adcgs_loss_create(adcgs_loss **out, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
 void adcgs_loss_free(adcgs_loss **loss);
 /**
- * image, target, grad: planar [3][height][width]; grad = d loss / d image, overwritten.
- * Deterministic at any thread count; no allocation once the workspace has grown. shares->ssim 0 skips SSIM.
+ * image, target, grad: planar [3][height][width]; grad = d loss / d image, overwritten. Deterministic for any number of threads;
+ * no allocation once the workspace has grown. shares->ssim 0 skips SSIM.
  */
 adcgs_status adcgs_loss_image(adcgs_loss *loss, const float *image, const float *target, int width, int height,
                               const adcgs_loss_shares *shares, float *grad, adcgs_loss_value *value, adcgs_error *error);

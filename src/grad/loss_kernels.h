@@ -7,14 +7,15 @@
  * With G the window, x the image and y the target, SSIM needs m = G x, n = G y,
  * q = G (x^2 + y^2) and c = G (x y) at each pixel, and its gradient is
  *   G (dS/dm) + 2 x G (dS/dq) + y G (dS/dc),
- * the derivatives taken as if m, q and c were independent. G is separable: rows
- * go through it once as they come in, the three derivatives again.
+ * with the derivatives taken as if m, q and c were independent. G is separable.
+ * Rows are filtered once when they are loaded, and the three derivatives again.
  *
- * A strip's columns are cut into sixteen stripes, one per lane, so that the
- * neighbours of a vector's pixels are vectors too: the window slides along a row
- * as it does down the columns, two places at a time, since their windows share
- * most of what they read. Rows come in turns. Down the columns a turn is done
- * one vector wide, which keeps the rows of its windows in the first-level cache.
+ * A strip's columns are divided into sixteen stripes, one per lane, so that the
+ * neighbours of a vector's pixels are vectors too. The window slides along a row
+ * as it does down the columns, two positions at a time, since adjacent windows
+ * share most of their input. Rows are processed in batches of ADCGS_LOSS_TURN.
+ * Down the columns a batch is processed one vector at a time, which keeps the
+ * rows of its windows in the L1 cache.
  */
 #include "grad/loss_strip.h"
 
@@ -40,12 +41,11 @@ enum { MAP_M, MAP_N, MAP_Q, MAP_C, MAPS_IN };
 enum { MAP_DM, MAP_DQ, MAP_DC, MAPS_OUT };
 enum { SUM_L1, SUM_MSE, SUM_SSIM };
 enum { LANES = ADCGS_LOSS_LANES, TURN = ADCGS_LOSS_TURN, RING = ADCGS_LOSS_RING, STRIPE = ADCGS_LOSS_STRIPE };
-/*
- * Rows that gradients stay behind derivatives (the halo, and one to be even), and that pixels are asked for before they are
- * read: rows of a strip are too short for the processor to foresee.
- */
-enum { BEHIND = HALO + 1, AHEAD = 3 };
-_Static_assert(TURN + BEHIND + HALO <= RING, "the rows that a turn reads are there");
+enum {
+    BEHIND = HALO + 1, /* rows by which gradients lag behind derivatives: the halo, and one to make it even */
+    AHEAD = 3          /* rows of prefetch; a strip's rows are too short for the hardware prefetcher */
+};
+_Static_assert(TURN + BEHIND + HALO <= RING, "the rows that a batch reads exist");
 
 /* ---- The window ---- */
 
@@ -54,8 +54,8 @@ typedef struct pair {
 } pair;
 
 /*
- * Windows over vectors 0 .. 10 and 1 .. 11. Each vector is next to its mirror images in both, so that going from one mirror
- * image to the next takes one load for each sum of two.
+ * Windows over vectors 0 .. 10 and 1 .. 11. In both, each vector is next to its mirror images, so that the step from one mirror
+ * image to the next needs one load for two sums.
  */
 LANES_INLINE pair windows(const float *p, const int at[12])
 {
@@ -78,7 +78,7 @@ LANES_INLINE pair windows(const float *p, const int at[12])
 #undef AT
 }
 
-/* Along a row. Its margins are filled in first: beyond a stripe lies the one of the next lane. */
+/* Filters along a row. Fills the margins first: beyond a stripe lies the stripe of the next lane. */
 static void filter_row(adcgs_loss_wide row, adcgs_loss_row out, int stripe)
 {
     static const int side_by_side[12] = {0, 16, 32, 48, 64, 80, 96, 112, 128, 144, 160, 176};
@@ -93,7 +93,7 @@ static void filter_row(adcgs_loss_wide row, adcgs_loss_row out, int stripe)
     }
 }
 
-/* Where the rows around those of a turn are, size apart in a ring. */
+/* Positions of the rows around those of a batch, size apart in a ring. */
 static void place_rows(int at[TURN + 2 * HALO], int first, int size)
 {
     for (int i = 0; i < TURN + 2 * HALO; i++)
@@ -130,7 +130,7 @@ static void from_stripes(float *row, adcgs_loss_row in, int stripe)
     }
 }
 
-/* A row of the image; it may be narrower than the stripes. */
+/* Loads a row of the image, which may be narrower than the stripes. */
 static void load_row(const adcgs_loss_strip *s, const float *image, int row, adcgs_loss_scratch *w, adcgs_loss_wide out)
 {
     const float *from = image + (size_t)row * (size_t)s->width + s->begin;
@@ -141,7 +141,7 @@ static void load_row(const adcgs_loss_strip *s, const float *image, int row, adc
     to_stripes(out, from, s->stripe);
 }
 
-/* 1 in count columns from first, else 0. */
+/* 1 in `count` columns from `first`, else 0. */
 static void mark_columns(adcgs_loss_row out, int first, int count, int stripe)
 {
     for (int i = 0; i < LANES * stripe; i++)
@@ -150,7 +150,7 @@ static void mark_columns(adcgs_loss_row out, int first, int count, int stripe)
 
 /* ---- SSIM and its derivatives ---- */
 
-/* A row into the rings; there is nothing above and below the image. */
+/* Loads a row into the rings; rows above and below the image are 0. */
 static void take_row(const adcgs_loss_strip *s, int row, adcgs_loss_scratch *w)
 {
     adcgs_loss_wide *const pixels = w->pixels[(row + RING) % RING];
@@ -188,7 +188,7 @@ LANES_INLINE vf ssim_of(vf m, vf k, vf q, vf c, vf inside, adcgs_loss_wide *deri
     return s;
 }
 
-/* Derivatives of a turn of rows, of which the last may be below the image. */
+/* Derivatives of a batch of rows; the last rows may be below the image. */
 static void ssim_rows(const adcgs_loss_strip *s, int row, adcgs_loss_scratch *w)
 {
     enum { MAP = STRIPE * LANES };
@@ -209,7 +209,7 @@ static void ssim_rows(const adcgs_loss_strip *s, int row, adcgs_loss_scratch *w)
     }
 }
 
-/* Derivatives of a turn of rows into the ring of those that go out. */
+/* Filters derivatives of a batch of rows into the output ring. */
 static void differentiate(const adcgs_loss_strip *s, int row, adcgs_loss_scratch *w)
 {
     ssim_rows(s, row, w);
@@ -223,7 +223,7 @@ static void differentiate(const adcgs_loss_strip *s, int row, adcgs_loss_scratch
 
 /* ---- Gradients ---- */
 
-/* Of one vector; adds |x - y| and (x - y)^2 to the sums of its columns. */
+/* Gradient of one vector; adds |x - y| and (x - y)^2 to the sums of its columns. */
 LANES_INLINE void gradient_of(const adcgs_loss_strip *s, adcgs_loss_scratch *w, int row, int r, int i, vf dm, vf dq, vf dc,
                               vf sums[2])
 {
@@ -236,7 +236,7 @@ LANES_INLINE void gradient_of(const adcgs_loss_strip *s, adcgs_loss_scratch *w, 
     sums[SUM_MSE] = vf_fma(vf_mul(mine, d), d, sums[SUM_MSE]);
 }
 
-/* Of rows from .. TURN-1 of a turn. */
+/* Gradients of rows from .. TURN-1 of a batch. */
 static void gradient_rows(const adcgs_loss_strip *s, int row, int from, adcgs_loss_scratch *w)
 {
     enum { MAP = STRIPE * LANES };

@@ -39,7 +39,7 @@ static inline double adcgs_random_unit(uint64_t seed, uint64_t stream, uint64_t 
     return (double)(adcgs_random64(seed, stream, counter) >> 11) * 0x1p-53;
 }
 
-/** Approximately normal, mean 0, variance 1: the sum of four uniforms; enough to start weights from. */
+/** Approximately normal, mean 0, variance 1: the sum of four uniforms; sufficient for initial weights. */
 static inline double adcgs_random_normal(uint64_t seed, uint64_t stream, uint64_t counter)
 {
     const uint64_t r = adcgs_random64(seed, stream, counter);

@@ -14,12 +14,12 @@
 typedef struct adcgs_raster_grads {
     float *mean[3], *scale[3], *rotation[4], *opacity, *colour[3];
     float *weight;      /**< sum over pixels of alpha*T: temporal significance Psi(k,t) (paper section 3.5) */
-    /** length of (sum over pixels of |dL/du|, of |dL/dv|), each times half the image size; NULL: not wanted, which saves time */
+    /** length of (sum over pixels of |dL/du|, of |dL/dv|), each times half the image size; NULL: skipped, which saves time */
     float *screen;
 } adcgs_raster_grads;
 
 #define ADCGS_GRAD_ROWS (ADCGS_ROWS + 2)
-/** All in rows [ADCGS_GRAD_ROWS][n]: those of primitives, then weight and screen. */
+/** All arrays in rows [ADCGS_GRAD_ROWS][n]: those of primitives, then weight and screen. */
 static inline adcgs_raster_grads adcgs_raster_grads_of(float *rows, size_t n)
 {
     const adcgs_slot_out o = adcgs_rows_at(rows, n, 0);
@@ -35,7 +35,7 @@ typedef struct adcgs_raster_back adcgs_raster_back;
 adcgs_status adcgs_raster_back_create(adcgs_raster_back **out, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
 void adcgs_raster_back_free(adcgs_raster_back **back);
 
-/** raster has just run forward with keep on these primitives and view; rgb, grad: the image and dL/d image, planar. */
+/** raster must have just run forward with keep on these primitives and view. rgb, grad: the image and dL/d image, planar. */
 adcgs_status adcgs_raster_backward(adcgs_raster_back *back, const adcgs_raster *raster, const adcgs_primitives *primitives,
                                    const adcgs_view *view, const float background[3], float screen_filter, const float *rgb,
                                    const float *grad, adcgs_raster_grads *out, adcgs_error *error);

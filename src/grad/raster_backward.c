@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Backward pass of the renderer: one line of sums per (splat, tile) pair, then
- * per slot the lines of its splat in the order of the pairs. Nothing is added
- * by two threads in one place, so the result is the same for any number.
+ * Backward pass of the renderer: one row of sums per (splat, tile) pair, then per slot the rows of its splat in the order of the
+ * pairs. No two threads add to the same place, so the result is the same for any number of threads.
  */
 #include "config.h"
 
 #include "grad/raster_isa.h"
 
-/* Slots carried back by one piece of work. */
+/* Slots per job of the back-projection. */
 #define PROJECT_PIECE 512u
 
 struct adcgs_raster_back {
     adcgs_back_dsp dsp;
     adcgs_pool *pool;
     float *sums;
-    size_t entries; /* room in sums */
+    size_t entries; /* allocated entries of sums */
     adcgs_back_job job;
 };
 
@@ -85,7 +84,7 @@ adcgs_status adcgs_raster_backward(adcgs_raster_back *b, const adcgs_raster *ras
     adcgs_kept kept;
     adcgs_raster_kept(raster, &kept);
     if (!kept.where || kept.n_slots != primitives->n)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "backward: the last forward pass kept nothing for %u slots", primitives->n);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "backward: the last forward pass kept no data for %u slots", primitives->n);
     const int tiles = kept.tiles_x * kept.tiles_y;
     ADCGS_TRY(grow(b, kept.tile_start[tiles], error));
     b->job = (adcgs_back_job){.kept = kept,

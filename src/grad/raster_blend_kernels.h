@@ -1,25 +1,24 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Body of the backward blend. A tile's splats are walked front to back, as the
- * forward pass did; each pixel keeps its transmittance and one more number, the
- * product of the gradient and what the splats still to come contribute.
+ * Body of the backward blend. A tile's splats are visited front to back, as in the forward pass. Each pixel keeps its
+ * transmittance and the product of the gradient and the contribution of the splats still to come.
  */
 #include "grad/raster_isa.h"
 #include "render/alpha.h"
 
-/* How far ahead splats and places of sums are fetched. */
+/* Prefetch distance of splats and their sums, in entries. */
 #define FETCH_ENTRIES 8
 
 typedef struct tile_state {
     alignas(64) float t[16][16];      /* transmittance before the next splat */
-    alignas(64) float alpha[2][16][16]; /* opacities of the splats at hand and next */
+    alignas(64) float alpha[2][16][16]; /* opacities of the current and the next splat */
     alignas(64) float behind[16][16]; /* gradient times (final colour - colour so far) */
     alignas(64) float grad[16][3][16];
-    alignas(64) float x[16], y[16]; /* left and upper edges of the blocks */
-    uint32_t alive; /* blocks with light left */
+    alignas(64) float x[16], y[16]; /* left and top edges of the blocks */
+    uint32_t alive; /* blocks with remaining transmittance */
 } tile_state;
 
-/* The pixels of a block from a plane of the image; those outside are 0. */
+/* Loads the pixels of a block from a plane of the image; pixels outside are 0. */
 LANES_INLINE vf load_pixels(const float *plane, int x, int y, int width, int height)
 {
     const float *at = plane + (size_t)y * (size_t)width + (size_t)x;
@@ -51,9 +50,7 @@ static void start_block(tile_state *s, const adcgs_back_job *job, int block, int
     s->alive |= (uint32_t)1 << block;
 }
 
-/*
- * Light of a block passes a splat: the colours' sums take it in, and what is left of it is kept. Returns alpha * dL/dalpha.
- */
+/* Passes a block through a splat: adds to the colours' sums and updates the transmittance. Returns alpha * dL/dalpha. */
 LANES_INLINE vf pass_block(tile_state *s, uint32_t turn, const adcgs_splat2d *g, int block, vf sum[12])
 {
     const vf red = vf_load(s->grad[block][0]), green = vf_load(s->grad[block][1]), blue = vf_load(s->grad[block][2]);
@@ -86,7 +83,7 @@ LANES_INLINE void find_offsets(block_offsets *o, const tile_state *s, const adcg
     vf_store(o->yy, vf_mul(y, y));
 }
 
-/* Moments of e as if it all stood at the block's corner; move_moments() makes up for that, for all blocks at once. */
+/* Moments of e as if it were concentrated at the block's corner; move_moments() corrects this for all blocks at once. */
 LANES_INLINE void add_moments(vf sum[12], vf e, const block_offsets *o, int block)
 {
     sum[0] = vf_add(sum[0], e);
@@ -117,9 +114,9 @@ LANES_INLINE void add_screen(vf sum[12], const adcgs_splat2d *g, vf e, const blo
 }
 
 /*
- * The opacities of an entry's blocks that have light, one entry ahead of their use. They come first and on their own, since
- * nothing there waits for anything: in one loop with the rest the processor would spend its time waiting at the end of a long
- * chain.
+ * Opacities of an entry's blocks with remaining transmittance, one entry ahead of their use. They are computed separately,
+ * because they do not depend on other results. In one loop with the rest, the processor would wait at the end of a long
+ * dependency chain.
  */
 static inline void alpha_entry(tile_state *s, const adcgs_back_job *job, uint32_t i)
 {
@@ -138,7 +135,7 @@ static inline void alpha_entry(tile_state *s, const adcgs_back_job *job, uint32_
     }
 }
 
-/* The sums of colours and those of moments fit into registers of AVX one after the other, not together. */
+/* The sums of colours and of moments fit into AVX registers only one after the other. */
 LANES_INLINE void sum_blocks(tile_state *s, uint32_t turn, const adcgs_splat2d *g, uint32_t mask, int screen, vf sum[12])
 {
     block_offsets offsets;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What the kernels of the backward pass take, and their variants; for raster_backward.c alone. */
+/** \file Interface of the kernels of the backward pass, and their variants; only for raster_backward.c. */
 #ifndef ADCGS_GRAD_RASTER_ISA_H
 #define ADCGS_GRAD_RASTER_ISA_H
 
 #include "grad/raster.h"
 
-/* Sums over the pixels of a (splat, tile) pair: where vf_sums() puts the twelve. e is alpha * dL/dalpha. */
+/* Sums over the pixels of a (splat, tile) pair, in the order of the twelve results of vf_sums(). e is alpha * dL/dalpha. */
 enum {
     SUM_E = 0,       /* e */
     SUM_EX = 4,      /* e dx */
@@ -33,9 +33,9 @@ typedef struct adcgs_back_job {
 } adcgs_back_job;
 
 typedef struct adcgs_back_dsp {
-    /** Fill the sums of a tile's entries. */
+    /** Computes the sums of a tile's entries. */
     void (*blend)(const adcgs_back_job *job, int tile);
-    /** Add the sums of 64 slots' splats and carry them to the gradients. */
+    /** Adds the sums of 64 slots' splats, and computes the gradients of the slots. */
     void (*project)(const adcgs_back_job *job, uint32_t first);
 } adcgs_back_dsp;
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Body of the backward projection: the sums of a slot's splat over its tiles,
- * in the order of its entries, then from the splat to mean, scale, rotation,
- * opacity and colour.
+ * Body of the backward projection: the sums of a slot's splat over its tiles, in the order of its entries, then from the splat to
+ * mean, scale, rotation, opacity and colour.
  */
 #include "grad/raster_isa.h"
 #include "render/project.h"
@@ -16,7 +15,7 @@ typedef struct slot_sums {
     alignas(64) int32_t drawn[64];
 } slot_sums;
 
-/* How many slots ahead the first lines are fetched: slots are not in the order of depth, in which the lines lie. */
+/* Prefetch distance in slots; their rows lie in depth order, not in slot order. */
 #define FETCH_AHEAD 6
 
 static void fetch_sums(const adcgs_back_job *job, uint32_t splat)
@@ -62,7 +61,7 @@ static inline void conic_back(float back[3], const adcgs_projection *g, float ex
     back[2] = inv * (ga - g->p * s);
 }
 
-/* Gradient of the rotation matrix to the quaternion, all four components free. */
+/* Gradient of the quaternion from that of the rotation matrix, all four components free. */
 static inline void rotation_back(float out[4], float d[3][3], float w, float x, float y, float z)
 {
     out[0] = 2.0f * (z * (d[1][0] - d[0][1]) + y * (d[0][2] - d[2][0]) + x * (d[2][1] - d[1][2]));
@@ -95,7 +94,7 @@ static inline void carry_back(gaussian_grads *out, const adcgs_projection *g, co
             along[i] += m[i][k] * g->m[i][k];
             tilt[i] += m[i][k] * view->rotation[6 + k];
         }
-    /* Where the Jacobian's x/z is limited, it does not move with the mean. */
+    /* Where the Jacobian's x/z is clamped, it does not depend on the mean. */
     const float tx = view->fx * gu - (g->lx == g->tx ? g->jx * tilt[0] : 0.0f);
     const float ty = view->fy * gv - (g->ly == g->ty ? g->jy * tilt[1] : 0.0f);
     const float cx = tx * g->iz, cy = ty * g->iz, cz = -g->iz * (along[0] + along[1] + tx * g->tx + ty * g->ty);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What the coder's tables say about a value, and how that changes with the
- * value and its sigma level: the rate that training sees once it rounds.
+ * Cost of a value by the coder's tables, and its derivatives with respect to the value and its sigma level: the rate in training
+ * once it rounds.
  */
 #include "grad/dsp.h"
 
 #include <stdlib.h>
 
-/** Bits at which a table holds little more than the smallest probability it can: its differences say nothing then. */
+/** Bits near the table's smallest probability, at which its differences are meaningless. */
 #define FLAT_BITS 13
 
 static double sigma_of(double level)
@@ -20,7 +20,7 @@ static double upper_tail(double x)
     return 0.5 * erfc(x * 0.70710678118654752);
 }
 
-/** Bits of magnitude a at a fractional level under the density that training sees before it rounds. */
+/** Bits of magnitude a at a fractional level, under the density used in training before rounding. */
 static double smooth_bits(double a, double level)
 {
     const double sigma = sigma_of(level), width = 1 + 4 * sigma;
@@ -33,13 +33,15 @@ static double table_bits(int shape, int level, int a)
     return adcgs_value_cost(shape, level, a) * 0x1p-16;
 }
 
-/** Whether the differences of the table mean something at this cell. */
+/** True if the table's differences are meaningful at this cell. */
 static int is_live(int shape, int level, int a)
 {
     return a <= adcgs_table_support(shape, level) && table_bits(shape, level, a) < FLAT_BITS;
 }
 
-/** Over a quarter of sigma to both sides, as neighbours in a wide table differ by less than they are rounded. */
+/**
+ * Difference over a quarter of sigma to both sides, because adjacent entries of a wide table differ by less than their rounding.
+ */
 static double by_value(int shape, int level, int a)
 {
     const int reach = (int)fmax(1, sigma_of(level) / 4);
