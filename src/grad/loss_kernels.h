@@ -54,8 +54,8 @@ typedef struct pair {
 } pair;
 
 /*
- * Windows over vectors 0 .. 10 and 1 .. 11. In both, each vector is next to its mirror images, so that the step from one mirror
- * image to the next needs one load for two sums.
+ * Windows over vectors 0 .. 10 and 1 .. 11. In both, each vector is next to its mirror images. So the step from one mirror image
+ * to the next needs one load for two sums.
  */
 LANES_INLINE pair windows(const float *p, const int at[12])
 {

@@ -3,7 +3,7 @@
 #ifndef ADCGS_GRAD_LOSS_STRIP_H
 #define ADCGS_GRAD_LOSS_STRIP_H
 
-#define ADCGS_LOSS_HALO 5
+#define ADCGS_LOSS_HALO 5   /**< pixels: radius of the SSIM window */
 #define ADCGS_LOSS_LANES 16
 /** Maximum columns of a stripe; a strip has one stripe per lane. */
 #define ADCGS_LOSS_STRIPE 14

@@ -11,7 +11,11 @@
 /* Median error of correct poses on test scenes: 0.06 pixels, with few distant cameras 0.17. With pose errors of 1 pixel: 1. */
 #define FITS 0.4             /* pixels: median error of poses that fit the images */
 #define FITS_WELL 0.2        /* pixels: median error below which no other reading is tried */
-enum { POINTS_LEAST = 100, POINTS_MOST = 4000, VIEWS_MOST = 200 }; /* min. and max. number of points; max. number of views */
+enum {
+    POINTS_LEAST = 100, /* minimum number of points for a test */
+    POINTS_MOST = 4000, /* maximum number of points that are tested */
+    VIEWS_MOST = 200    /* maximum number of views that are tested */
+};
 #define SEEN_WELL 0.2        /* share of the points that a camera sees on average, from which the given poses are accepted */
 #define SEEN_ENOUGH 0.05     /* share that confirms the given poses; low, since a camera in a room sees few points of it */
 #define SEEN_BETTER 3.0      /* minimum ratio of the share under another reading to the share as given */

@@ -7,7 +7,10 @@
 
 #include <math.h>
 
-enum { AROUND = 64, NORMAL_LEAST = 6 }; /* maximum number of neighbours; minimum number of points for a normal */
+enum {
+    AROUND = 64,     /* maximum number of neighbours */
+    NORMAL_LEAST = 6 /* minimum number of points for a normal */
+};
 
 static uint32_t number_of(const adcgs_cloud *c, const int64_t cell[3])
 {

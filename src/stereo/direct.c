@@ -6,13 +6,16 @@
 
 #include <math.h>
 
-enum { ROUNDS = 10, LEAST = 30 /* minimum number of samples */ };
+enum {
+    ROUNDS = 10, /* maximum number of steps */
+    LEAST = 30   /* minimum number of samples */
+};
 #define OFF_FIRST 0.20     /* colour difference at which the agreement is one half, in the first round */
-#define OFF_LAST 0.08
-#define OFF_MIDDLE 0.12
-#define DAMPING 1e-3
+#define OFF_LAST 0.08      /* the same in the last round */
+#define OFF_MIDDLE 0.12    /* the same from which iteration may stop early */
+#define DAMPING 1e-3       /* relative increase of the system's diagonal */
 #define STIFF 0.05         /* prior of slope 1, as a sum of squared colours */
-#define SLOPE_MOST 3.0
+#define SLOPE_MOST 3.0     /* maximum slope of colours */
 #define STEP_LEAST 0.01    /* pixels: step length at which iteration stops */
 #define STEP_MOST 1.5      /* pixels: maximum step of the body's points, approximately */
 

@@ -9,7 +9,10 @@
 enum { SEEN_LEAST = 4 }; /* minimum number of other images for a background colour */
 enum { ALIKE_MOST = 128 }; /* maximum number of velocities in a median */
 #define ALIKE_REACH 0.15     /* scene units: radius of the velocity median */
-enum { OFF_LEAST = 9, PART_LEAST = 24 }; /* pixels: least number that differ in a 5x5 window; least size of a moving part */
+enum {
+    OFF_LEAST = 9,  /* minimum number of differing pixels in a 5x5 window */
+    PART_LEAST = 24 /* pixels: minimum size of a moving part */
+};
 #define MOVED (22 / 255.0f)  /* minimum difference from all background colours nearby */
 #define HIDDEN 1.08          /* relative to the depth of the surface; points farther away are hidden */
 

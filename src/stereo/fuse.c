@@ -4,9 +4,12 @@
 
 #include <math.h>
 
-enum { AGREE_STRONG = 2, AGREE_WEAK = 3 }; /* other views that must confirm a strong or weak depth */
-#define SAME 1.0   /* tolerance of equal depths, in planes */
-#define BEHIND 3.0
+enum {
+    AGREE_STRONG = 2, /* other views that must confirm a strong depth */
+    AGREE_WEAK = 3    /* other views that must confirm a weak depth */
+};
+#define SAME 1.0   /* planes: maximum difference of equal depths */
+#define BEHIND 3.0 /* planes: minimum difference of different depths */
 
 adcgs_status adcgs_stereo_list_add(adcgs_stereo_list *list, const adcgs_stereo_point *point, adcgs_error *error)
 {

@@ -6,7 +6,11 @@
 
 #include <math.h>
 
-enum { REACH = 3, OFF_LEAST = 3, PART = 256 }; /* frames to search; pixels of a 3x3 window that differ; points per job */
+enum {
+    REACH = 3,     /* frames: maximum distance of an end from the point's frame */
+    OFF_LEAST = 3, /* minimum number of differing pixels of a 3x3 window that does not show background */
+    PART = 256     /* points per job */
+};
 #define USUAL_SHARE 0.8 /* share of the cameras that see the place and must show the background */
 
 typedef struct job {

@@ -8,7 +8,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { LEAST = 60, AROUND = 48, MEET = 6 /* minimum number of points for smoothing */ };
+enum {
+    LEAST = 60,  /* minimum number of points of a merged model */
+    AROUND = 48, /* maximum number of neighbours */
+    MEET = 6     /* minimum number of points for smoothing */
+};
 #define EDGE 1.2    /* pixels: size of a cell */
 #define SMOOTH 2.5  /* pixels: radius of smoothing */
 

@@ -8,6 +8,10 @@
 
 #include <math.h>
 
+/*
+ * Checked on 40 generated scenes and four others without errors, in which no camera is reported, and on scenes with one
+ * wrong camera: table "One camera" in doc/results.md.
+ */
 enum { SOURCES = 6 };        /* maximum number of source cameras per camera, the nearest first */
 enum { REACH = 12 };         /* pixels: search radius around a point's expected position */
 enum { ANYWHERE = 640 };     /* approximate number of points for the search over the whole image */

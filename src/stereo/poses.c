@@ -11,7 +11,10 @@ enum { SIDE = ADCGS_WINDOW_SIDE, WINDOW = ADCGS_WINDOW };
 enum { CELL = 7 };                            /* pixels between sampled windows */
 enum { REACH = 4 };                           /* pixels: search range to each side of an epipolar line */
 enum { STEPS_MOST = 200 };                    /* maximum number of steps along a line */
-enum { MATCHES_LEAST = 12, MATCHES_MOST = 1024 }; /* per pair of cameras: minimum for a result, and maximum */
+enum {
+    MATCHES_LEAST = 12, /* minimum number of matches of a pair of cameras for a result */
+    MATCHES_MOST = 1024 /* maximum number of matches of a pair of cameras */
+};
 enum { NEIGHBOURS = 2 };                      /* per camera */
 #define AXES_ALIKE 0.85 /* cosine: minimum alignment of the axes of compared cameras */
 #define APART 0.02      /* scene units: minimum distance between them */

@@ -10,8 +10,8 @@
 #define MATCH_REACH 2.0    /* pixels: maximum distance of a match in space */
 #define MATCH_OFF 3.0      /* pixels: the same including the colour term */
 #define FACING 0.15        /* cosine: minimum between normal and viewing ray; below it, a surface is seen at a grazing angle */
-#define GAIN_LEAST 0.4     /* bounds of lighting gains */
-#define GAIN_MOST 2.5
+#define GAIN_LEAST 0.4     /* minimum lighting gain */
+#define GAIN_MOST 2.5      /* maximum lighting gain */
 #define GAIN_KNOWN 0.2     /* prior of the gains: sum of squares of a channel at which a side's own data has half the weight */
 
 int adcgs_body_side(const float normal[3])

@@ -8,11 +8,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { PIXELS_LEAST = 4096, PIXELS_MOST = 28000 }; /* minimum size of an image; maximum size of a reduced image */
+enum {
+    PIXELS_LEAST = 4096, /* pixels: minimum size of an image for matching */
+    PIXELS_MOST = 28000  /* pixels: maximum size of a reduced image */
+};
 #define USUAL 18              /* levels of 255: maximum difference of a pixel from its background */
 #define USUAL_SHARE 0.55      /* minimum share of the frames in which a pixel must show its background */
-#define NEAREST 0.2           /* scene units: default depth range, from depths observed in such units */
-#define FARTHEST 8.0
+#define NEAREST 0.2           /* scene units: default minimum depth, from depths observed in such units */
+#define FARTHEST 8.0          /* scene units: default maximum depth, likewise */
 
 /** Camera and time of the scene's views. */
 typedef struct index {
@@ -33,8 +36,11 @@ static void index_clear(index *x)
 
 /* ---- Single moving camera ---- */
 
-enum { FILM_LEAST = 8, ALIKE_OF_4 = 3 }; /* minimum number of images; images of four with the direction of the previous one */
-#define ALIKE 0.966 /* cosine between these directions */
+enum {
+    FILM_LEAST = 8, /* minimum number of images */
+    ALIKE_OF_4 = 3  /* of four images: minimum number with the viewing direction of the previous one */
+};
+#define ALIKE 0.966 /* minimum cosine between such directions */
 
 typedef struct timed {
     double time;

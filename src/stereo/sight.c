@@ -12,8 +12,8 @@ enum { BESIDE = 2 };    /* pixels: radius around a match; a similar window outsi
 #define ALIKE 0.88f     /* minimum correlation of a match */
 #define SHARP 0.04f     /* minimum decrease of the correlation one pixel away */
 #define UNIQUE 0.06f    /* minimum lead over all windows outside the radius */
-#define SMALLEST 0.5    /* range of the scale between the windows in the two images */
-#define LARGEST 2.0
+#define SMALLEST 0.5    /* minimum scale between the windows in the two images */
+#define LARGEST 2.0     /* maximum scale between them */
 
 /* ---- Windows ---- */
 

@@ -5,7 +5,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { STEP_PRICE = 6, JUMP_LEAST = 20, JUMP_MORE = 60, PATHS = 4 /* paths from one side */ };
+enum {
+    STEP_PRICE = 6,  /* cost of a step to an adjacent plane */
+    JUMP_LEAST = 20, /* cost of a larger step at high contrast */
+    JUMP_MORE = 60,  /* additional cost without contrast */
+    PATHS = 4        /* paths from one side */
+};
 #define EDGE 20.0f       /* per unit of contrast: depth edges often coincide with image edges */
 #define ALIKE 0.45f      /* maximum cost of a strong match, relative to the full cost */
 #define CLEAR 0.03f      /* minimum lead of the best plane over the next best */

@@ -14,8 +14,15 @@
 
 #include <math.h>
 
-enum { REFERENCES = 4, MOVING_LEAST = 24, MARGIN = 4 }; /* views matched per frame; least moving pixels; pixels around them */
-enum { MOST = 5, LINE = 3 }; /* of the nine pixels of a window */
+enum {
+    REFERENCES = 4,    /* maximum number of views matched per frame */
+    MOVING_LEAST = 24, /* minimum number of moving pixels in a view that is matched */
+    MARGIN = 4         /* pixels around the moving ones that are matched, too */
+};
+enum {
+    MOST = 5, /* differing pixels of a 3x3 window that make its centre moving */
+    LINE = 3  /* the same if the centre itself differs */
+};
 #define AXES_ALIKE 0.6  /* cosine: minimum alignment of the axes of matched views */
 #define APART 0.005     /* scene units: minimum distance between views, for depth */
 

@@ -4,11 +4,19 @@
 
 #include <math.h>
 
-enum { RADIUS = 2, SIDE = 2 * RADIUS + 1, PLANES_LEAST = 24, PLANES_MOST = 112 };
+enum {
+    RADIUS = 2, /* pixels: of a window */
+    SIDE = 2 * RADIUS + 1,
+    PLANES_LEAST = 24,
+    PLANES_MOST = 112
+};
 #define WINDOW (SIDE * SIDE)
 #define NOISE 1e-4f         /* variance of a window without texture */
-/* Maximum costs: of uncorrelated windows, of a colour difference, and of a position that a neighbour does not see. */
-enum { UNLIKE_MOST = 120, COLOUR_MOST = ADCGS_SWEEP_COST - UNLIKE_MOST, UNSEEN = 2 * ADCGS_SWEEP_COST };
+enum {
+    UNLIKE_MOST = 120,                            /* maximum cost of uncorrelated windows */
+    COLOUR_MOST = ADCGS_SWEEP_COST - UNLIKE_MOST, /* maximum cost of a colour difference */
+    UNSEEN = 2 * ADCGS_SWEEP_COST                 /* cost of a position that a neighbour does not see */
+};
 enum { STILL_THERE = 100 }; /* cost where the view shows moving content and the neighbour shows background */
 enum { THIN = 12 };         /* maximum number of moving pixels in the window of a thin object */
 #define COLOUR_OFF 0.15f    /* colour difference of maximum cost */

@@ -7,7 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { PICTURES_MOST = 16, ANCHORS_LEAST = 100 };
+enum {
+    PICTURES_MOST = 16, /* maximum number of images for the details */
+    ANCHORS_LEAST = 100 /* minimum of max_anchors */
+};
 
 adcgs_status adcgs_plan_details(const adcgs_scene *scene, int divide, uint32_t *details, adcgs_error *error)
 {

@@ -11,7 +11,8 @@ enum { BINS = 256 };
 static const float BIN = 1.0f / 1024;
 static const float SPREAD = 4.0f / 255, /* maximum range of values that count as one black */
     MOST = 0.1f;                        /* maximum value of black; brighter content is merely dark */
-static const double LEAST_SHARE = 0.01, SHARE = 0.2;
+static const double LEAST_SHARE = 0.01, /* share of the darkest pixels that are ignored in the range of values */
+    SHARE = 0.2;                        /* share of the pixels that are used, the darkest */
 
 /** Histogram of one channel of a camera. */
 typedef struct histogram {

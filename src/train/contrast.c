@@ -5,7 +5,7 @@
 #include <math.h>
 
 enum { PICTURES_MOST = 64 };
-/** Bounds of the factor; images of one colour still need a positive lambda. */
+/** Bounds of lambda's factor; images of one colour still need a positive lambda. */
 static const double LEAST = 0.1, MOST = 4;
 
 adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_error *error)

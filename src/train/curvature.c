@@ -12,7 +12,10 @@
 
 #include <math.h>
 
-enum { PROBES = 2, MEASURE_VIEWS = 32 };
+enum {
+    PROBES = 2,        /* random sign vectors per view */
+    MEASURE_VIEWS = 32 /* maximum number of views for measuring the loss */
+};
 
 /*
  * Share of a step by which all values move to measure the loss. Close to the rounding error, because the curvature may differ at

@@ -9,7 +9,10 @@
 
 #include <math.h>
 
-enum { DECIDE_TIMES = 16, DECIDE_VIEWS = 32 };
+enum {
+    DECIDE_TIMES = 16, /* times at which motion is measured */
+    DECIDE_VIEWS = 32  /* maximum number of views for measuring the loss */
+};
 #define FAINT_SHARE 0.1      /* of the rendered weight: maximum of the faint primitives dropped */
 #define FAINT_MEAN 0.4       /* mean opacity of rendered primitives below which a scene counts as faint */
 #define CHANGING_SHARE 0.01F /* of an anchor's rendered weight: maximum at changing pixels, if the anchor is static */

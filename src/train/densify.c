@@ -83,7 +83,10 @@ static void grow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const a
 
 /* ---- Growth from residuals ---- */
 
-enum { MISSING_MOST = 512, MOMENT_MOST = 256 };
+enum {
+    MISSING_MOST = 512, /* maximum number of positions from residuals */
+    MOMENT_MOST = 256   /* maximum number of matched points */
+};
 
 static uint32_t nearest_anchor(const adcgs_fmodel *f, const uint32_t pos[3])
 {

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { PICTURES_LEAST = 4 };
+enum { PICTURES_LEAST = 4 }; /* minimum mean number of images per camera */
 static const double
     /* Decay of the sums from one image of a camera to its next. */
     KEEP = 0.9,

@@ -8,7 +8,11 @@
 
 #include <math.h>
 
-enum { MOMENTS = 2, VIEWS_MOST = 8, VIEWS_LEAST = 2 };
+enum {
+    MOMENTS = 2,    /* frames per call */
+    VIEWS_MOST = 8, /* maximum number of views of a frame */
+    VIEWS_LEAST = 2 /* minimum number of views that contain a point */
+};
 #define GAIN_LEAST 0.04f /* minimum gain: reduction of the absolute error, mean over views and channels */
 
 /** The points of a frame. */

@@ -24,9 +24,7 @@ enum {
 #define PRUNE_FROM 0.05        /* log of bytes over room: minimum for pruning anchors */
 #define PRUNE_LEAST 0.8        /* minimum share of the anchors that one pruning keeps */
 enum { PRUNE_AFTER = 50 };     /* minimum iterations of statistics before pruning */
-/*
- * Gains of the controller. Bytes vary with about the -0.3rd power of lambda, and need a tenth of the run to follow it.
- */
+/* Gains of the controller. Bytes vary with about the -0.3rd power of lambda, and need a tenth of the run to follow it. */
 #define GAIN_CHANGE 3.0 /* on the change of the error, initially the whole error */
 #define GAIN_ERROR 30.0 /* on the error integrated over the run */
 #define GAIN_PSNR 0.3   /* error per dB */

@@ -8,7 +8,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { TIMES = 3, MOMENTS = 16, CAMERAS = 4, ANCHOR_BITS = 180 };
+enum {
+    TIMES = 3,        /* number of tests in a run */
+    MOMENTS = 16,     /* maximum number of frames that are tested */
+    CAMERAS = 4,      /* maximum number of views of each */
+    ANCHOR_BITS = 180 /* expected bits of an anchor that is sent again */
+};
 #define VISIBLE 0.02f /* colour difference: minimum error of an anchor's contribution */
 #define SEEN 2.0f     /* pixels: minimum coverage over all views of a frame, below which they are ignored */
 #define WORTH 4.0     /* ratio of the actual decrease of the loss to the decrease of squared errors */

@@ -7,11 +7,19 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { VIEWS_MOST = 32, VIEWS_LEAST = 3, PIXELS_MOST = 256, DEPTHS = 256 };
-enum { SLACK = 3 /* depth steps within which neighbours agree */, VOTES_LEAST = 3 };
+enum {
+    VIEWS_MOST = 32,   /* maximum number of views of the frame */
+    VIEWS_LEAST = 3,   /* minimum number of views of the frame */
+    PIXELS_MOST = 256, /* maximum number of rays of a view */
+    DEPTHS = 256       /* depth steps of a ray */
+};
+enum {
+    SLACK = 3,      /* depth steps within which neighbours agree */
+    VOTES_LEAST = 3 /* minimum number of agreeing neighbours if only one other camera sees the point */
+};
 #define DIFFERENCE 0.08f /* minimum residual of a pixel whose ray is searched */
-#define NEAREST 0.25f    /* depth range of a ray, scene units */
-#define FARTHEST 8.0f
+#define NEAREST 0.25f    /* scene units: minimum depth of a ray */
+#define FARTHEST 8.0f    /* scene units: maximum depth of a ray */
 #define AGREES 0.4f      /* share of the pixel's residual that another camera must show */
 
 typedef struct look {

@@ -8,8 +8,11 @@
 
 #include <math.h>
 
-/* Training cameras for the median depth of visible points; points tested per camera; minimum number of visible points. */
-enum { CAMERAS_MOST = 64, POINTS_MOST = 2000, SEEN_LEAST = 8 };
+enum {
+    CAMERAS_MOST = 64,  /* maximum number of training cameras whose median depth is used */
+    POINTS_MOST = 2000, /* maximum number of points tested per camera */
+    SEEN_LEAST = 8      /* minimum number of visible points for a median depth */
+};
 static const double
     /* Minimum share of the training cameras that have the focus of their axes in front. */
     IN_FRONT = 0.75,

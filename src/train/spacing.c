@@ -9,7 +9,11 @@
 
 #include <math.h>
 
-enum { NEAREST = 3, ABOUT = 4, FEW = 8 }; /* ABOUT: neighbours tested per side; FEW: cubes this small are not split */
+enum {
+    NEAREST = 3, /* nearest voxels whose mean distance is wanted */
+    ABOUT = 4,   /* neighbours in Morton order tested per side for a first bound */
+    FEW = 8      /* maximum voxels of a cube that is not split further */
+};
 
 typedef struct query {
     const uint32_t (*pos)[3];

@@ -19,8 +19,10 @@
 #include "train/views.h"
 #include "train/weight_steps.h"
 
-/* WEIGH_AFTER: minimum iterations before motion is tested; it is not trained enough before. */
-enum { WEIGH_AFTER = 300, MEANS_EVERY = 100 };
+enum {
+    WEIGH_AFTER = 300, /* minimum iterations before motion is tested; it is not trained enough before */
+    MEANS_EVERY = 100  /* iterations between exact updates of the means for rounding */
+};
 
 static adcgs_status round_values(adcgs_trainer *t, adcgs_error *error)
 {

@@ -152,10 +152,9 @@ static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
     }
 }
 
-/** Random points: radius of the volume that the cameras surround, outer radius, and share of the points between them. */
-#define NEAR_RADIUS 1.2
-#define FAR_RADIUS 4.0
-#define FAR_SHARE 0.2
+#define NEAR_RADIUS 1.2 /* scene units: random points in the volume that the cameras surround */
+#define FAR_RADIUS 4.0  /* scene units: random points behind it */
+#define FAR_SHARE 0.2   /* of the random points lie beyond the near radius */
 #define CORE_SHARE 0.5 /* of the points lie in the inner half of the near radius, where all cameras look */
 
 /** Uniform in a ball, or outside it with a density proportional to distance^-3, like the resolution of images. */

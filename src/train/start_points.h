@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Initial points of anchors. Either the scene's points with moving points from matching (stereo/stereo.h), or all points from
- * matching, with random points in the cameras' common volume where matching found nothing. Only training views are used.
+ * Initial points of anchors: the scene's points, with moving points from matching (stereo/stereo.h). A scene without points uses
+ * all matched points, and random points in the cameras' common volume where matching found nothing. Only training views are used.
  */
 #ifndef ADCGS_TRAIN_START_POINTS_H
 #define ADCGS_TRAIN_START_POINTS_H

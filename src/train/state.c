@@ -103,9 +103,9 @@ static adcgs_status follow(adcgs_trainer *t, const adcgs_model *before, adcgs_er
 }
 
 /**
- * Uses a spline over time where each frame is seen by less than half of the cameras. The spline supplies content that a frame
- * does not show from adjacent frames. Where most cameras see each frame, the frames suffice, and a spline would blur sudden
- * changes. All parts of a scene have the choice of the whole scene. A preset without a spline stays without.
+ * Uses a spline over time if less than half of the cameras see a frame on average. The spline supplies content that a frame does
+ * not show from adjacent frames. Where most cameras see each frame, the frames suffice, and a spline would blur sudden changes.
+ * All parts of a scene have the choice of the whole scene. A preset without a spline stays without.
  */
 static adcgs_status choose_smooth_time(adcgs_params *params, const adcgs_scene *scene, adcgs_error *error)
 {

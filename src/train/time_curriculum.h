@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Curriculum over time. A run starts with the views around the middle of time and gradually adds others. A new row of the time
- * table starts as a copy of its neighbour, so that motion is tracked from one time to the next instead of being sought at all
- * times at once. See Bengio et al. 2009, Curriculum learning, ICML. A run that continues the previous segment starts at the
- * beginning of time, where that segment ended, and bodies continue their motion.
+ * table starts as a copy of its neighbour. So motion is tracked from one time to the next instead of being sought at all times at
+ * once. See Bengio et al. 2009, Curriculum learning, ICML. A run that continues the previous segment starts at the beginning of
+ * time, where that segment ended, and bodies continue their motion.
  */
 #ifndef ADCGS_TRAIN_TIME_CURRICULUM_H
 #define ADCGS_TRAIN_TIME_CURRICULUM_H

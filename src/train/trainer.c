@@ -10,7 +10,14 @@
 
 #include <math.h>
 
-enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, AGREE_EVERY = 100, ROLLBACKS_MAX = 4, MEANS_AFTER = 100 };
+enum {
+    SNAPSHOT_EVERY = 500, /* iterations between snapshots for a rollback */
+    CHECK_EVERY = 10,     /* iterations between checks for NaN and infinity */
+    REPORT_EVERY = 10,    /* iterations between reports */
+    AGREE_EVERY = 100,    /* iterations between comparisons of a team's models */
+    ROLLBACKS_MAX = 4,    /* maximum number of rollbacks of a run */
+    MEANS_AFTER = 100     /* iterations after which the running means are meaningful */
+};
 static const double
     LOST_BY = 2,      /* ratio of the RMS error to the images' standard deviation, which is the error of one colour for all */
     LOST_LEAST = 0.1, /* minimum of that deviation, since images of one colour have none */

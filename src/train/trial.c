@@ -16,7 +16,11 @@
 #include <string.h>
 
 enum { NONE = -1 }; /* no mechanism is left out */
-enum { ITERATIONS_LEAST = 100, ITERATIONS_MOST = 600, DENSIFICATIONS = 20 };
+enum {
+    ITERATIONS_LEAST = 100, /* minimum iterations of a trial */
+    ITERATIONS_MOST = 600,  /* maximum iterations of a trial */
+    DENSIFICATIONS = 20     /* densification intervals per trial */
+};
 /* Approximate pixels of a trial's images; enough to see a motion of 1/100 of the image. */
 static const double PIXELS = 12000;
 static const double

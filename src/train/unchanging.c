@@ -7,8 +7,10 @@
 #include "train/anchor_set.h"
 #include "train/views.h"
 
-/* Minimum images per camera for a result; images rendered per camera. */
-enum { PICTURES_LEAST = 4, PICTURES_DRAWN = 4 };
+enum {
+    PICTURES_LEAST = 4, /* minimum number of images of a camera for a result */
+    PICTURES_DRAWN = 4  /* number of images rendered per camera */
+};
 /* Invisible changes, in standard deviations of all images' values. */
 #define UNSEEN 0.2
 

@@ -9,7 +9,10 @@
 
 #include <math.h>
 
-enum { SAMPLES = 4096, WIDTH_MAX = ADCGS_NET_WIDTH_MAX };
+enum {
+    SAMPLES = 4096, /* of a network's activations */
+    WIDTH_MAX = ADCGS_NET_WIDTH_MAX
+};
 
 /** Approximate bits of a weight on its lattice. */
 #define WEIGHT_BITS 5.0
@@ -193,8 +196,8 @@ void adcgs_mlp_silence(const adcgs_mlp *m, float *p, adcgs_gram *gram, int unit)
 }
 
 /**
- * Effect of a unit's removal on the layers after it. It is the part that the others cannot replace, times the square of each
- * weight that reads it, times the mean squared gradient there (Adam keeps it for the biases).
+ * Effect of a unit's removal on the layers after it: the product of three terms. They are the part that the other units cannot
+ * replace, the square of each weight that reads the unit, and the mean squared gradient there (Adam keeps it for the biases).
  */
 static double presence(const adcgs_mlp *m, const adcgs_param *param, const adcgs_gram *gram, int unit, const uint8_t *keep)
 {

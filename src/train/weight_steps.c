@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { PATIENCE = 2 };
+enum { PATIENCE = 2 }; /* steps without a gain at which the search stops */
 
 /* ---- Bits ---- */
 
