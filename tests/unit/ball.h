@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A ball of radius 1 about the middle, covered with noise, which cameras see from outside, or from inside. */
+/** \file A ball of radius 1 about the middle, covered with noise, for cameras outside or inside. */
 #ifndef ADCGS_TESTS_BALL_H
 #define ADCGS_TESTS_BALL_H
 
@@ -30,7 +30,7 @@ static inline double ball_shows(const double x[3], uint32_t seed)
     return sum;
 }
 
-/** Where a ray meets it: from outside the near side, from inside the wall. \return how many directions away; 0: it does not. */
+/** Intersects a ray with the ball: the near side from outside, the wall from inside. \return lengths of direction; 0: none. */
 static inline double ball_hit(const double from[3], const double direction[3], double x[3])
 {
     double dd = 0.0, dp = 0.0, pp = 0.0;

@@ -11,12 +11,12 @@ static int setup(void **state)
 {
     fixture *f = fixture_new(state);
     adcgs_params params;
-    uint64_t seed = 11; /* no segment reaches the next */
+    uint64_t seed = 11; /* no segment crossfades into the next */
     adcgs_random_params(&params, 1, &seed);
     params.k = 4;
     params.n_fg = 4;
     params.chunks = 2;
-    params.spans = 0; /* what has no life is always there: masks can be told from opacities */
+    params.spans = 0; /* primitives without a lifetime are always present: opacities show the masks */
     if (adcgs_random_stream(&f->stream, &params, 3, 90, 5, &seed, NULL) != ADCGS_OK)
         return -1;
     for (uint32_t i = 0; i < f->stream.n_segments; i++)
@@ -30,7 +30,7 @@ static int setup(void **state)
     return adcgs_stream_write(&f->stream, &f->bytes, NULL) == ADCGS_OK ? 0 : -1;
 }
 
-/** Of all segments; predicted ones have as many as chance gave them. */
+/** The anchors of all segments; the number of predicted segments' anchors is random. */
 static inline uint32_t fixture_anchors(const fixture *f)
 {
     uint32_t n = 0;
@@ -49,7 +49,7 @@ static adcgs_decoder *open_with(const fixture *f, const adcgs_config *config)
     return d;
 }
 
-/** Before the scene, which fills about half of the picture. */
+/** A camera before the scene, which fills about half of the image. */
 #define FIXTURE_WIDTH 61
 #define FIXTURE_HEIGHT 47
 static const adcgs_camera fixture_camera = { .width = FIXTURE_WIDTH, .height = FIXTURE_HEIGHT, .fx = 60, .fy = 60, .cx = 30,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A small rig in every layout: cameras on an arc that look at the origin, pictures of 24x16, points round the origin. The
- * poses are made here, in OpenCV axes, and written as each layout wants them.
+ * A small rig in every layout: cameras on an arc that look at the origin, images of 24x16, points around the origin. The poses
+ * are made here, in OpenCV axes, and written in each layout's convention.
  */
 #ifndef ADCGS_TESTS_LAYOUT_FILES_H
 #define ADCGS_TESTS_LAYOUT_FILES_H
@@ -15,11 +15,11 @@
 
 enum { RIG_WIDTH = 24, RIG_HEIGHT = 16, RIG_POINTS = 27 };
 #define RIG_FOCAL 20.0
-/** A point of one's own: 1 2 3. */
+/** A user's own point: 1 2 3. */
 #define RIG_PLY                                                                                                          \
     "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n"
 
-/** Cameras 0, rig_moved, 2 * rig_moved, ... stand elsewhere, much farther off, and their bounds are nearer. 0: none does. */
+/** Cameras 0, rig_moved, 2 * rig_moved, ... are elsewhere, much farther off, with nearer bounds. 0: no camera. */
 static int rig_moved;
 
 static inline int rig_is_moved(int i)
@@ -67,7 +67,7 @@ static inline void put_folder(const char *name)
         assert_int_equal(access(in(name), F_OK), 0);
 }
 
-/** A picture whose colours tell its number. */
+/** An image whose colours encode its number. */
 static inline void put_picture(const char *name, int number, int width, int height)
 {
     adcgs_image image;
@@ -78,7 +78,7 @@ static inline void put_picture(const char *name, int number, int width, int heig
     adcgs_image_free(&image);
 }
 
-/** So many frames; 0 if this build writes no videos. */
+/** Writes this many frames; returns 0 if this build writes no videos. */
 static inline int put_video(const char *name, int number, int frames, int width, int height)
 {
     adcgs_video_writer *writer;
@@ -99,7 +99,7 @@ static inline int put_video(const char *name, int number, int frames, int width,
     return 1;
 }
 
-/** poses_bounds.npy for so many cameras; height, width and focal length are those of pictures so many times as large. */
+/** poses_bounds.npy for n cameras. Height, width and focal length are those of images `times` as large. */
 static inline void put_poses(int n, double times)
 {
     char header[128];
@@ -131,7 +131,7 @@ static inline void put_poses(int n, double times)
     free(data);
 }
 
-/** The rotation of a pose, turned round, as a quaternion: cameras of the rig never look backwards, so w is not 0. */
+/** The inverse rotation of a pose as a quaternion. Cameras of the rig never look backwards, so that w is not 0. */
 static inline void rig_quaternion(const double pose[12], double q[4], double t[3])
 {
     q[0] = 0.5 * sqrt(1 + pose[0] + pose[5] + pose[10]);
@@ -259,7 +259,7 @@ static inline void put_model_text(const char *place, int n, const char *names, c
     free(text);
 }
 
-/** How many of the rig's points a model of n images has left when every period-th is for testing. */
+/** Number of the rig's points that remain in a model of n images when every period-th is for testing. */
 static inline uint32_t count_kept_points(int n, int period)
 {
     uint32_t kept = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The rig of layout_files.h as a whole scene of every kind, and which files of it are for testing. */
+/** \file The rig of layout_files.h as a whole scene of every kind, and the files of its test views. */
 #ifndef ADCGS_TESTS_LAYOUT_KINDS_H
 #define ADCGS_TESTS_LAYOUT_KINDS_H
 
@@ -7,11 +7,11 @@
 
 enum { CAMERAS = 9, MOMENTS = 4 };
 
-/** A kind of scene, and the files of its test views: pictures or videos by number. */
+/** A kind of scene, and the files of its test views: images or videos by number. */
 typedef struct layout {
     const char *name;
     const char *scene;      /**< below the folder; "": the folder itself */
-    const char *tests;      /**< files of the test views, by a number; NULL: there are none */
+    const char *tests;      /**< files of the test views, by a number; NULL: none */
     int first, last, step;  /**< the numbers */
     int period;             /**< cameras 0, period, 2 * period, ... are for testing; 0: none of the rig's */
     void (*put)(void);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The scene that a test of layouts has open, if any, in the folder of its own. */
+/** \file The scene that a test of layouts has open, if any, in its separate folder. */
 #ifndef ADCGS_TESTS_OPENED_SCENE_H
 #define ADCGS_TESTS_OPENED_SCENE_H
 
@@ -15,7 +15,7 @@ static inline void expect_good(adcgs_status status)
         fail_msg("%s", error.text);
 }
 
-/** A teardown: the scene is closed, and the folder is empty. */
+/** A teardown: closes the scene and empties the folder. */
 static inline int clean(void **state)
 {
     adcgs_scene_free(&scene);

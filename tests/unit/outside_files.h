@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A folder of its own for each test program, and small files in it; data sets that are no part of the tree. */
+/** \file A separate folder for each test program, and small files in it; data sets outside the tree. */
 #ifndef ADCGS_TESTS_OUTSIDE_FILES_H
 #define ADCGS_TESTS_OUTSIDE_FILES_H
 
-#include "config.h" /* for the declarations that it switches on in system headers */
+#include "config.h" /* for the declarations that it enables in system headers */
 
 #include "base/base.h"
 
@@ -31,7 +31,7 @@ static inline const char *in(const char *name)
     return path;
 }
 
-/** The path of something in the folder that ADCGS_DATA names; the test is skipped if it is not there. Lives for two calls. */
+/** Path of a file in the folder that ADCGS_DATA names; the test is skipped without it. Lives for two calls. */
 static inline const char *real_data(const char *name)
 {
     static char paths[2][1024];
@@ -87,7 +87,7 @@ static inline void put_text(const char *name, const char *text)
     put_bytes(name, text, strlen(text));
 }
 
-/** The message is one line and says all of it. */
+/** The message is one line with both parts. */
 static inline void expect_error(adcgs_status got, adcgs_status expected, const char *first, const char *second)
 {
     if (got != expected || !strstr(error.text, first) || !strstr(error.text, second))

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A slow renderer in binary64, pixel by pixel over all splats, written from the
- * formulas and without a line of the product: what the fast one must agree with.
+ * A slow renderer in binary64, pixel by pixel over all splats, written from the formulas without any line of the product. The
+ * fast renderer must agree with it.
  */
 #ifndef TESTS_PIXELS_REFERENCE_H
 #define TESTS_PIXELS_REFERENCE_H
@@ -46,7 +46,7 @@ static inline double reference_limit(double x, double lo, double hi)
     return x < lo ? lo : x > hi ? hi : x;
 }
 
-/* Returns 0 if the splat is not drawn. */
+/* Returns 0 if the splat is not rendered. */
 static inline int reference_project(reference_splat *o, const reference_scene *s, const adcgs_view *view, double filter,
                                     uint32_t i)
 {
@@ -96,7 +96,7 @@ static int reference_compare(const void *a, const void *b)
     return x->z != y->z ? (x->z < y->z ? -1 : 1) : x->slot < y->slot ? -1 : x->slot > y->slot;
 }
 
-/* alpha of a splat at a pixel; 0 where it is not drawn. */
+/* alpha of a splat at a pixel; 0 where it is not rendered. */
 static inline double reference_alpha(const reference_splat *g, int x, int y)
 {
     const double dx = x + 0.5 - g->u, dy = y + 0.5 - g->v;

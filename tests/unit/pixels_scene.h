@@ -25,7 +25,7 @@ static inline double scene_normal(uint64_t *state)
     return sum;
 }
 
-/** Arrays of primitives that can be written: 14 arrays of n floats in one block. */
+/** Writable arrays of primitives: 14 arrays of n floats in one block. */
 typedef struct scene_splats {
     uint32_t n;
     float *data;

@@ -127,7 +127,7 @@ static void random_tables(adcgs_model *m, uint64_t *state)
         m->origin[a] = -1.0f + (float)draw(state, -9, 9) * 0x1p-5f;
 }
 
-/** Mostly small numbers, now and then one far out in the escape codes or past the clip. */
+/** Mostly small numbers, occasionally one far out in the escape codes or past the clip. */
 static void draw_site(void *user, const adcgs_latent_site *site)
 {
     uint64_t *state = user;
@@ -154,7 +154,7 @@ adcgs_status adcgs_random_values(adcgs_model *m, uint64_t *state, adcgs_error *e
     return status;
 }
 
-/** Runs of anchors that have a body, or none. */
+/** Runs of anchors with one body, or none. */
 static void random_bodies(adcgs_model *m, uint64_t *state)
 {
     int body = 0;
@@ -166,7 +166,7 @@ static void random_bodies(adcgs_model *m, uint64_t *state)
     }
 }
 
-/** Flags, masks, bodies and values of anchors that have their places. */
+/** Flags, masks, bodies and values of anchors whose positions are set. */
 static adcgs_status random_anchors(adcgs_model *m, uint64_t *state, adcgs_error *error)
 {
     for (uint32_t i = 0; i < m->n; i++) {
@@ -247,7 +247,7 @@ static int at_place(const adcgs_model *m, uint32_t anchor, uint64_t place)
     return adcgs_morton(m->pos + 3 * (size_t)anchor) == place;
 }
 
-/** Whether an anchor of the model that is settled already, or one that is kept, has this voxel. */
+/** True if one of the model's first `settled` anchors, or a predicted anchor, has this voxel. */
 static int is_taken(const adcgs_model *m, uint32_t settled, const adcgs_keep *kept, const adcgs_model *before,
                     const uint32_t voxel[3])
 {
@@ -264,7 +264,7 @@ adcgs_status adcgs_random_settle(adcgs_model *m, const adcgs_keep *kept, const a
 {
     const uint32_t side = 1U << m->depth;
     if ((uint64_t)m->n + kept->n > UINT64_C(1) << 3 * m->depth)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%u new anchors do not fit beside %u kept ones", m->n, kept->n);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%u new anchors do not fit next to %u predicted ones", m->n, kept->n);
     for (uint32_t i = 0; i < m->n; i++) {
         uint32_t *const voxel = m->pos + 3 * (size_t)i;
         while (is_taken(m, i, kept, before, voxel))
@@ -274,7 +274,7 @@ adcgs_status adcgs_random_settle(adcgs_model *m, const adcgs_keep *kept, const a
     return adcgs_morton_sort(m->pos, m->n, NULL, error) ? ADCGS_ERR_INTERNAL : ADCGS_OK;
 }
 
-/** Some whole steps: mostly few, now and then so many that they have an escape, or meet the clip. */
+/** A change by whole steps: mostly few, occasionally so many that they need an escape or meet the clip. */
 static int32_t random_steps_of(int16_t before, uint64_t *state)
 {
     const int kind = draw(state, 0, 99);
@@ -300,7 +300,7 @@ static void random_modes(adcgs_keep *kept, const adcgs_model *before, uint64_t *
     }
 }
 
-/** Those of the model before; of each role now and then another, also where it had none. */
+/** The networks of the model before; each role is occasionally replaced, or added where absent. */
 static adcgs_status random_networks(adcgs_model *m, const adcgs_model *before, uint64_t *state, adcgs_error *error)
 {
     for (int role = 0; role < ADCGS_ROLES; role++) {
@@ -322,7 +322,7 @@ adcgs_status adcgs_random_join(const adcgs_keep *kept, const adcgs_model *before
     return status;
 }
 
-/** New anchors in a frame that has its networks, and then the kept ones. */
+/** Makes new anchors in a frame that has its networks, then joins the predicted ones. */
 static adcgs_status random_joined(adcgs_model *m, const adcgs_model *before, adcgs_keep *kept, uint32_t n, uint64_t *state,
                                   adcgs_error *error)
 {

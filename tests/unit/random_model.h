@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Random valid models and streams for tests: any parameters, small networks
- * inside their bounds, random anchors, values quantised along the walk of the
- * latents. The seed decides everything.
+ * Random valid models and streams for tests: any parameters, small networks inside their bounds, random anchors, values quantised
+ * along the walk of the latents. The seed determines everything.
  */
 #ifndef ADCGS_TESTS_RANDOM_MODEL_H
 #define ADCGS_TESTS_RANDOM_MODEL_H
@@ -15,40 +14,40 @@ uint64_t adcgs_random_next(uint64_t *state);
 /** Uniform in [lo, hi]. */
 int64_t adcgs_random_range(uint64_t *state, int64_t lo, int64_t hi);
 
-/** Any valid parameters; moving decides whether there is a time table. */
+/** Any valid parameters; moving: with a time table. */
 void adcgs_random_params(adcgs_params *params, int moving, uint64_t *state);
-/** The same for small streams that move: two primitives, three channels of f_v, n_fg of f_g in two chunks. */
+/** The same for small streams with motion: two primitives, three channels of f_v, n_fg of f_g in two chunks. */
 void adcgs_random_small_params(adcgs_params *params, int n_fg, uint64_t *state);
 /** A valid model of n anchors in a cube of depth bits per axis (n <= 2^(3 depth)), times 0..1 s. Allocated without a memory. */
 adcgs_status adcgs_random_model(adcgs_model *model, const adcgs_params *params, uint32_t n, int depth, uint64_t *state,
                                 adcgs_error *error);
-/** Have all anchors come at once, where a test is of something else. */
+/** Puts all anchors into one tier, for tests of something else. */
 void adcgs_random_one_tier(adcgs_model *model);
 /**
- * A valid model that can follow another as a predicted segment: its anchors are some of the other's, as they are or with
- * differences, and at most n new ones; most of its networks are the other's.
+ * A valid model that can be predicted from another: its anchors are some of the other's, unchanged or with differences, and at
+ * most n new ones. Most of its networks are the other's.
  */
 adcgs_status adcgs_random_follower(adcgs_model *model, const adcgs_model *before, uint32_t n, uint64_t *state,
                                    adcgs_error *error);
-/** A stream of such models, of which some are predicted, and some have the networks of the one before; cameras and metadata. */
+/** A stream of such models, some of them predicted, some with the networks of the model before; cameras and metadata. */
 adcgs_status adcgs_random_stream(adcgs_stream *stream, const adcgs_params *params, uint32_t segments, uint32_t n, int depth,
                                  uint64_t *state, adcgs_error *error);
 /**
- * The segments of a stream that has its parameters: every third a key of n anchors, the others predicted, each with at most added
- * new anchors; one after the other in time.
+ * The segments of a stream whose parameters are set: every third a key of n anchors, the others predicted, each with at most
+ * `added` new anchors; consecutive in time.
  */
 adcgs_status adcgs_random_turns(adcgs_stream *stream, uint32_t segments, uint32_t n, int depth, uint32_t added, uint64_t *state,
                                 adcgs_error *error);
-/** Draw all values of a model anew along the walk, for the networks, flags and masks that it has. */
+/** Chooses all values of a model again along the walk, for its networks, flags and masks. */
 adcgs_status adcgs_random_values(adcgs_model *model, uint64_t *state, adcgs_error *error);
 
-/* Parts of a follower. */
+/* Parts of a predicted model. */
 
-/** A model without anchors and networks, predicted from another, which it shares everything else with. */
+/** A model without anchors and networks, predicted from another, with which it shares everything else. */
 adcgs_model adcgs_random_frame(const adcgs_model *before);
-/** New anchors whose voxels are taken, by each other or by those kept of the model before, move to free ones; all are sorted. */
+/** Moves new anchors whose voxels are taken, by each other or by predicted anchors, to free ones; sorts them all. */
 adcgs_status adcgs_random_settle(adcgs_model *added, const adcgs_keep *kept, const adcgs_model *before, adcgs_error *error);
-/** Join what is kept of the model before with the new anchors that a model holds, in this model. */
+/** Joins the predicted anchors of the model before with the new anchors that a model holds, in this model. */
 adcgs_status adcgs_random_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *model, adcgs_error *error);
 
 #endif

@@ -56,7 +56,7 @@ static inline adcgs_status write_splats(const adcgs_splats *splats, const char *
     return adcgs_splats_write(splats, &(adcgs_splats_style){.comment = "here"}, path, &error);
 }
 
-/** A file of the folder; the caller frees it. */
+/** Loads a file of the folder; the caller frees it. */
 static inline uint8_t *load(const char *name, size_t *bytes)
 {
     uint8_t *data = NULL;
@@ -64,7 +64,7 @@ static inline uint8_t *load(const char *name, size_t *bytes)
     return data;
 }
 
-/** From a splat's middle along one of its axes, as far as it is long. */
+/** The end of one of a splat's axes, one standard deviation from its centre. */
 static inline void tip(double out[3], const adcgs_splats *s, uint32_t i, int axis)
 {
     const double w = (double)s->rotation[0][i], x = (double)s->rotation[1][i], y = (double)s->rotation[2][i];
@@ -76,14 +76,14 @@ static inline void tip(double out[3], const adcgs_splats *s, uint32_t i, int axi
         out[a] = (double)s->mean[a][i] + (double)s->scale[axis][i] * m[a][axis];
 }
 
-/** PlayCanvas' splat-transform (npm). ADCGS_SPLAT_TRANSFORM may be its command, otherwise it is looked for on the path. */
+/** PlayCanvas' splat-transform (npm). ADCGS_SPLAT_TRANSFORM may be its command; by default it is searched on the path. */
 static inline const char *splat_transform_command(void)
 {
     const char *const given = getenv("ADCGS_SPLAT_TRANSFORM");
     return given ? given : "splat-transform";
 }
 
-/** To begin a test with that wants it, before it owns anything: the test is skipped without it. */
+/** Skips the test without the program. A test calls this first, before it owns anything. */
 static inline void need_splat_transform(void)
 {
     char line[1024];
@@ -94,7 +94,7 @@ static inline void need_splat_transform(void)
     }
 }
 
-/** It, on a file of the folder. */
+/** Runs the program on a file of the folder. */
 static inline void splat_transform(const char *from, const char *options, const char *to)
 {
     char line[2048];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Numbers over the whole of a range: as many of each power of two, and the limits themselves often. */
+/** \file Numbers over the whole of a range: equally many of each power of two, and the limits themselves often. */
 #ifndef TESTS_RANGES_H
 #define TESTS_RANGES_H
 
@@ -11,7 +11,7 @@ static inline int ranges_chance(uint64_t *state, double p)
     return scene_uniform(state) < p;
 }
 
-/** Between 2^low and 2^high; each limit once in eight times. */
+/** Between 2^low and 2^high; each limit once in ten times. */
 static inline double ranges_size(uint64_t *state, double low, double high)
 {
     const double at = 1.25 * scene_uniform(state) - 0.125;
@@ -25,14 +25,14 @@ static inline double ranges_signed(uint64_t *state, double low, double high)
     return ranges_chance(state, 0.5) ? -x : x;
 }
 
-/** Between two numbers, evenly; each once in eight times. */
+/** Uniform between two numbers; each limit once in ten times. */
 static inline double ranges_between(uint64_t *state, double low, double high)
 {
     const double at = 1.25 * scene_uniform(state) - 0.125;
     return at < 0 ? low : at > 1 ? high : low + at * (high - low);
 }
 
-/** As the specification has it (`opacity_of`). */
+/** `opacity_of` of the specification. */
 static inline float ranges_opacity_of(float power)
 {
     const float m = power + ADCGS_ROUND_MAGIC, f = power - (m - ADCGS_ROUND_MAGIC);

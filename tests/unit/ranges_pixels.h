@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Projection and blending as the specification's text has them, splat by splat
- * and pixel by pixel without tiles; each number on the way is held against the
- * range that annex "Numerical bounds" gives it.
+ * Projection and blending by the specification's text, splat by splat and pixel by pixel without tiles. Each intermediate number
+ * is checked against its range in annex "Numerical bounds".
  */
 #ifndef TESTS_RANGES_PIXELS_H
 #define TESTS_RANGES_PIXELS_H
@@ -17,7 +16,7 @@
 #include <setjmp.h>
 #include <cmocka.h>
 
-/** Why a splat is not drawn, or that it is. */
+/** The reason for not rendering a splat, or DRAWN. */
 typedef enum verdict { DRAWN, BEHIND, FAINT, ASIDE, FLAT_OR_VAST, VERDICTS } verdict;
 
 typedef struct drawn_splat {
@@ -43,7 +42,7 @@ static inline void ranges_rotation(float m[3][3], float w, float x, float y, flo
     memcpy(m, rows, sizeof rows);
 }
 
-/** f: two rows, of the picture's axes; l: x/z and y/z, limited. */
+/** f: two rows, of the image's axes; l: x/z and y/z, limited. */
 static inline void ranges_footprint(float f[2][3], const adcgs_view *view, const adcgs_primitives *s, uint32_t i, float iz,
                                     const float l[2])
 {
@@ -62,7 +61,7 @@ static inline void ranges_footprint(float f[2][3], const adcgs_view *view, const
     }
 }
 
-/** The numbers a, b and c of what is drawn, from its covariance. */
+/** The numbers a, b and c of a rendered splat, from its covariance. */
 static inline void ranges_conic(drawn_splat *o, float p, float q, float r)
 {
     const float qq = q * q;
@@ -80,7 +79,7 @@ static inline verdict ranges_shape(drawn_splat *o, const adcgs_view *view, const
     ranges_footprint(f, view, s, i, iz, l);
     const float p = fmaf(f[0][2], f[0][2], fmaf(f[0][1], f[0][1], fmaf(f[0][0], f[0][0], filter)));
     const float r = fmaf(f[1][2], f[1][2], fmaf(f[1][1], f[1][1], fmaf(f[1][0], f[1][0], filter)));
-    assert_true(p >= 0 && r >= 0); /* infinite, perhaps; never NaN */
+    assert_true(p >= 0 && r >= 0); /* possibly infinite, never NaN */
     if (!(p >= 0x1p-20f && p <= 0x1p40f && r >= 0x1p-20f && r <= 0x1p40f))
         return FLAT_OR_VAST;
     const float q = 0x1.ffff8p-1f * fmaf(f[0][2], f[1][2], fmaf(f[0][1], f[1][1], f[0][0] * f[1][0]));
@@ -125,7 +124,7 @@ static inline int ranges_compare(const void *a, const void *b)
     return x->z != y->z ? (x->z < y->z ? -1 : 1) : x->slot < y->slot ? -1 : x->slot > y->slot;
 }
 
-/** A pixel, and how many splats changed it. */
+/** A pixel, and the number of splats that changed it. */
 typedef struct blended {
     float x, y, t, colour[3];
     int layers;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A far wall and a square before it, which moves, both with a texture, seen by six cameras that stay. */
+/** \file A far wall and a moving square in front of it, both textured, seen by six static cameras. */
 #ifndef ADCGS_TESTS_SQUARE_SCENE_H
 #define ADCGS_TESTS_SQUARE_SCENE_H
 
@@ -15,7 +15,7 @@ enum { CAMERAS = 6, MOMENTS = 9, VIEWS = CAMERAS * MOMENTS, WIDTH = 96, HEIGHT =
 #define WALL 2.0
 #define SQUARE 1.2
 #define HALF 0.12  /* of the square */
-#define SPEED 0.8  /* along x, a unit of time */
+#define SPEED 0.8  /* along x, per unit of time */
 
 static double half_wide = HALF, half_high = HALF;
 static adcgs_scene_view views[VIEWS];
@@ -45,7 +45,7 @@ static double colour_at(const adcgs_camera *c, double t, double px, double py, i
                                            : texture(m[3] + WALL * ray[0], m[7] + WALL * ray[1], 20 + (uint64_t)channel);
 }
 
-/** What the view's camera shows at a time, in its file; at none (NaN) the wall alone. */
+/** Writes the image of the view's camera at a time; NaN: the wall alone. */
 static void put_picture(const adcgs_scene_view *v, double t)
 {
     adcgs_image image;

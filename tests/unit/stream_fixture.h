@@ -16,7 +16,7 @@ typedef struct fixture {
     adcgs_buffer bytes;
 } fixture;
 
-/** Nothing yet; teardown() frees it. */
+/** An empty fixture; teardown() frees it. */
 static inline fixture *fixture_new(void **state)
 {
     fixture *f = calloc(1, sizeof *f);
@@ -26,7 +26,7 @@ static inline fixture *fixture_new(void **state)
     return f;
 }
 
-/** Keys and predicted segments in turns of three, layers of several slices, as adcgs_random_turns() has it, and their bytes. */
+/** Keys and predicted segments in turns of three, layers of several slices, by adcgs_random_turns(), and their bytes. */
 static inline int fixture_turns(fixture *f, const adcgs_params *params, uint32_t segments, uint32_t n, int depth, uint32_t added,
                                 uint64_t *seed)
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The public interface as such: callers older and newer than the library, versions, errors of every function, limits that stay
- * limits, messages.
+ * The public interface: callers older and newer than the library, versions, errors of every function, strict limits, messages.
  */
 #include "config.h"
 
@@ -11,7 +10,7 @@
 
 #define GUARD 0xa5
 
-/** Room for structs of any version, and bytes behind them that nobody may touch. */
+/** Room for structs of any version, with guard bytes behind them. */
 typedef union guarded {
     adcgs_config config;
     adcgs_info info;
@@ -22,7 +21,7 @@ static void assert_guarded(const guarded *g, size_t size)
 {
     for (size_t i = size; i < sizeof g->bytes; i++)
         if (g->bytes[i] != GUARD)
-            fail_msg("byte %zu behind a struct of %zu was written", i, size);
+            fail_msg("byte %zu was written, behind a struct of %zu bytes", i, size);
 }
 
 static void test_config_sizes(void **state)
@@ -51,7 +50,7 @@ static int layers_of(const fixture *f, const adcgs_config *config)
     return info.layers;
 }
 
-/** What an older caller's struct does not reach is not looked at; what a newer one's has beyond ours must be its default. */
+/** Fields beyond an older caller's struct are ignored. Fields of a newer caller beyond ours must have their defaults. */
 static void test_callers_of_all_ages(void **state)
 {
     const fixture *f = *state;
@@ -128,7 +127,7 @@ static void test_version(void **state)
     assert_true(ADCGS_MAKE_VERSION(0, 1, 999) < ADCGS_MAKE_VERSION(0, 2, 0) && ADCGS_MAKE_VERSION(0, 999, 999) < 1000000);
 }
 
-/** A wrong call: its status, and a line that names what is wrong. */
+/** A wrong call: its status, and a line that names the fault. */
 #define ASSERT_REFUSED(call, word)                                   \
     do {                                                             \
         error = (adcgs_error){ ADCGS_OK, "" };                       \
@@ -177,7 +176,7 @@ static void test_errors(void **state)
     adcgs_close(&d);
 }
 
-/** Everything that allocates, with or without an error. Returns how many of the calls hit the limit; no other failure is one. */
+/** All calls that allocate, with or without an error. Returns how many hit the limit; no other failure is accepted. */
 static int count_limits(const fixture *f, uint64_t limit, adcgs_error *error)
 {
     static float rgb[3 * FIXTURE_WIDTH * FIXTURE_HEIGHT];
@@ -213,7 +212,7 @@ static int count_limits(const fixture *f, uint64_t limit, adcgs_error *error)
     return hits;
 }
 
-/** Wherever a limit of memory strikes, it is said to be one, also to a caller who does not want to know why. */
+/** A call that hits the memory limit returns that status, with and without an error argument. */
 static void test_memory_limits(void **state)
 {
     const fixture *f = *state;
@@ -224,10 +223,10 @@ static void test_memory_limits(void **state)
         assert_int_equal(count_limits(f, limit, &error), hits);
         seen[hits] = 1;
     }
-    assert_true(seen[0] && seen[1] && seen[5] && seen[6]); /* nothing, the largest picture alone, all but opening, all */
+    assert_true(seen[0] && seen[1] && seen[5] && seen[6]); /* no call, the largest image alone, all except opening, all */
 }
 
-/** What a listener heard. */
+/** The messages that a listener received. */
 typedef struct heard {
     int warnings, infos;
     char warning[256], info[256];
@@ -269,7 +268,7 @@ static void test_log(void **state)
     assert_true(h.warnings == 1 && h.infos > 3); /* some chunks were skipped */
 }
 
-/** The format's bounds, for whoever writes a stream. */
+/** The writer enforces the format's bounds. */
 static void test_writer_limits(void **state)
 {
     fixture *f = *state;
@@ -298,7 +297,7 @@ static void test_writer_limits(void **state)
     assert_int_equal(adcgs_stream_write(s, &out, &error), ADCGS_ERR_USAGE);
     s->meta[0].key = key;
     const uint32_t anchors = s->segments[0].n;
-    s->segments[0].n = ADCGS_ANCHORS_MAX + 1; /* refused before anything of them is looked at */
+    s->segments[0].n = ADCGS_ANCHORS_MAX + 1; /* refused before any anchor is read */
     assert_int_equal(adcgs_stream_write(s, &out, &error), ADCGS_ERR_LIMIT);
     assert_non_null(strstr(error.text, "anchors is 1048577"));
     s->segments[0].n = anchors;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Whether poses are told to be meant otherwise than they are given: of a ball that cameras stand around, and of a room that they
- * look out into, by points, by pictures and by where cameras are; of scenes in order nothing is said.
+ * The check for poses in another convention than stated: for a ball with cameras around it and a room with cameras looking out,
+ * by points, by images and by camera positions. Correct scenes cause no report.
  */
 #include "outside_files.h"
 
@@ -18,7 +18,7 @@ static adcgs_scene_view views[CAMERAS];
 static char names[CAMERAS][300];
 static double positions[POINTS][3];
 
-/** What a camera sees of a sphere of radius 1 about the middle: from outside the near side, from inside the wall. */
+/** The image of a sphere of radius 1 about the middle: its near side from outside, the wall from inside. */
 static void put_picture(const char *name, const adcgs_camera *c)
 {
     adcgs_image image;
@@ -37,7 +37,7 @@ static void put_picture(const char *name, const adcgs_camera *c)
     adcgs_image_free(&image);
 }
 
-/** Cameras on an arc, so far from the middle, above it; they look at it from far, and away from it from near. */
+/** Cameras on an arc of a radius about the middle, above it. From outside they look at the middle, from inside away from it. */
 static void make_scene(double radius, double degrees)
 {
     for (int i = 0; i < CAMERAS; i++) {
@@ -72,7 +72,7 @@ static void add_points(void)
     scene.points.position = positions;
 }
 
-/** As somebody else writes poses. */
+/** Writes the poses in another convention. */
 static void write_otherwise(adcgs_reading reading)
 {
     for (int i = 0; i < CAMERAS; i++) {
@@ -91,7 +91,7 @@ static void write_otherwise(adcgs_reading reading)
     }
 }
 
-/** matched: pictures are asked, too. */
+/** matched: images are used, too. */
 static adcgs_axes_doubt doubt(int matched)
 {
     adcgs_axes_doubt out;
@@ -129,7 +129,7 @@ static void test_around(void **state)
     }
 }
 
-/** Cameras that look out of a room are in order; where nothing can be seen of that, they are asked about. */
+/** Cameras that look out of a room are correct. By camera positions alone, the check suggests another convention. */
 static void test_room(void **state)
 {
     make_scene(0.4, 300.0);
@@ -139,7 +139,7 @@ static void test_room(void **state)
     expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_POINTS, 0);
 }
 
-/** All look nearly one way: where they look says nothing, and what they show does. */
+/** All look nearly in one direction: their directions give no evidence, but their images do. */
 static void test_forward(void **state)
 {
     make_scene(4.0, 20.0);

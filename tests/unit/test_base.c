@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Ground: known answers of the digests, memory accounting, statuses, CPU levels, and the pool at 1, 2 and 7 threads. */
+/** \file The base: known answers of the digests, memory accounting, statuses, CPU levels, and the pool at 1, 2 and 7 threads. */
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "base/fmath.h"

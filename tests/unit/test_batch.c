@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Iterations of several looks: the tree by which they are summed, the mean that comes of it, whole runs of them,
- * and runs that share them.
+ * Iterations of several view passes: the tree by which they are summed, the resulting mean, whole runs of them, and runs that
+ * share them.
  */
 #include "tiny_scene.h"
 
@@ -22,7 +22,7 @@ static float value_of(uint32_t place, size_t i)
     return (float)adcgs_random_normal(7, place, i) * (float)(1 << (place * 7 + i) % 20);
 }
 
-/** As tree_sum.h says it: halves, of which the first is the longest power of two that leaves something. */
+/** By tree_sum.h: two halves; the first is the longest power of two that leaves something. */
 static float sum_of(uint32_t first, uint32_t n, size_t i)
 {
     uint32_t half = 1;
@@ -33,7 +33,7 @@ static float sum_of(uint32_t first, uint32_t n, size_t i)
     return sum_of(first, half, i) + sum_of(first + half, n - half, i);
 }
 
-/** Wherever places are cut between those that sum them. */
+/** The sum has the same bits for any division of the places between ranks. */
 static void parts_sum_to_the_same_bits(void **state)
 {
     static float room[MOST][WIDE];
@@ -73,7 +73,7 @@ static adcgs_trainer *make_at(const adcgs_train_config *config, uint32_t stop)
     return t;
 }
 
-/** At the beginning and while noise stands for rounding: the mean of four looks, and the sum of what they show. */
+/** At the start, and while noise stands for rounding: the mean of four view passes, and the sum of their statistics. */
 static void gradients_are_the_mean(void **state)
 {
     static const uint32_t stops[] = { 0, 20 };
@@ -147,7 +147,7 @@ static void assert_ends_alike(adcgs_trainer *a, adcgs_trainer *b)
     adcgs_buffer_clear(&ends[1]);
 }
 
-/** Neither on threads nor on stopping, at any stage, does a run depend. */
+/** A run depends neither on threads nor on stopping at any stage. */
 static void runs_end_alike(void **state)
 {
     (void)state;
@@ -171,11 +171,11 @@ static void runs_end_alike(void **state)
     }
 }
 
-/* ---- Teams, of a thread each ---- */
+/* ---- Teams of one thread each ---- */
 
 enum { TEAM_MOST = 4 };
 
-/** Where they swap. */
+/** The place where team members swap data. */
 typedef struct board {
     pthread_barrier_t all;
     const adcgs_ranks_part *out[TEAM_MOST];
@@ -228,7 +228,7 @@ static void *run_member(void *user)
     return NULL;
 }
 
-/** Run the team's trainers to their end, or where the first one's observer says stop. */
+/** Runs the team's trainers to their end, or until the first one's observer says stop. */
 static void run_team(member *team, int size, board *b)
 {
     *b = (board){ .faults = 0 };
@@ -245,7 +245,7 @@ static void run_team(member *team, int size, board *b)
     assert_int_equal(b->faults, 0);
 }
 
-/** However many share the looks: each ends with the state of a run that has them all; and all stop where the first one does. */
+/** With any number of members, each ends with the state of a single run. All stop where the first one does. */
 static void teams_end_as_one(void **state)
 {
     static const int sizes[][2] = { { 4, 2 }, { 5, 3 } };
@@ -277,7 +277,7 @@ static void teams_end_as_one(void **state)
     }
 }
 
-/** Who computes otherwise is noticed. */
+/** A member with a different computation is detected. */
 static void strangers_are_noticed(void **state)
 {
     const adcgs_train_config config = run_config(2);

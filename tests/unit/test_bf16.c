@@ -2,7 +2,7 @@
 /**
  * \file
  * Layers in bf16 and their weight gradients against plain sums in double of factors rounded to bf16, for sizes that fill no
- * vector and for large ones; nothing is written beside the outputs. Skipped where the CPU has no AVX512-BF16.
+ * vector and for large ones. Nothing is written outside the outputs. Skipped where the CPU has no AVX512-BF16.
  */
 #include "base/cpu.h"
 #include "grad/dsp.h"
@@ -32,8 +32,8 @@ static double rounded(float v)
 }
 
 /**
- * A product of two numbers of 8 bits is exact, so what is left is the rounding of sums: at most one half of 2^-23 of the sum of
- * magnitudes for each term.
+ * A product of two numbers of 8 bits is exact, so only the sums are rounded: at most one half of 2^-23 of the sum of magnitudes
+ * for each term.
  */
 static void check(float got, double want, double magnitudes, int terms)
 {
@@ -88,7 +88,7 @@ static double square_sum(int n, int o, int l, double first, const float *v, doub
     return sum;
 }
 
-/** A residual layer and the way back through it, with w in place of its transpose. */
+/** A residual layer and its backward pass, with w instead of its transpose. */
 static void check_residual(const adcgs_train_dsp *dsp, int n)
 {
     static _Alignas(64) uint32_t packed[MOST * LDW];
@@ -203,7 +203,7 @@ static void test_residual_layers(void **state)
         check_residual(&dsp, units[i]);
 }
 
-/** Without the kernels, or at another level, there is one line that says so, and the kernels are those of binary32. */
+/** Without the kernels, or at another level, the error is one line, and the kernels are those of binary32. */
 static void test_check(void **state)
 {
     for (adcgs_cpu_level level = ADCGS_CPU_SCALAR; level < ADCGS_CPU_AVX512; level++) {

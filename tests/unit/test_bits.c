@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Byte fields and the range coder: inverse of each other, terminating and honest about damage. */
+/** \file Byte fields and the range coder: inverse of each other, terminating, and detecting damage. */
 #include "bits/range.h"
 
 #include <math.h>
@@ -55,7 +55,7 @@ static void test_varint_is_unique(void **state)
     }
 }
 
-/* A random mixture of everything the coder can do; decode != 0 checks instead of writing. */
+/* A random mixture of all functions of the coder; decode != 0 checks instead of writing. */
 typedef struct mixture {
     uint32_t cdf[40];
     int n;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Rigid bodies in pictures: a box that turns 20 degrees a moment and one that slides are found, told apart and followed; boxes
- * whose looks are other ones at each moment are none, nor is a shadow.
+ * Rigid bodies in images: a box that turns by 20 degrees per frame and one that slides are found, separated and followed. Boxes
+ * whose appearance changes in each frame are no rigid bodies, nor is a shadow.
  */
 #include "outside_files.h"
 
@@ -16,8 +16,8 @@
 enum { CAMERAS = 6, MOMENTS = 8, VIEWS = CAMERAS * MOMENTS, WIDTH = 104, HEIGHT = 64, FOCAL = 100, BOXES = 2 };
 #define PI 3.14159265358979
 #define WALL 2.2
-#define TURN (20 * PI / 180) /* of the first one, a moment, about y */
-#define STEP 0.03      /* of the second one, a moment, along y */
+#define TURN (20 * PI / 180) /* of the first box, per frame, about y */
+#define STEP 0.03      /* of the second box, per frame, along y */
 
 static adcgs_scene_view views[VIEWS];
 static adcgs_scene scene = { .views = { views }, .n_views = { VIEWS }, .duration = 1, .n_times = MOMENTS,
@@ -25,10 +25,10 @@ static adcgs_scene scene = { .views = { views }, .n_views = { VIEWS }, .duration
 static const adcgs_stereo_options options = { .scale = 1, .still = 300, .moving = 700, .bodies = ADCGS_BODIES_MAX };
 static const double half[BOXES] = { 0.2, 0.13 };
 static adcgs_stereo found; /* without threads */
-static int flickers; /* whether the boxes' looks change */
-static int shadow;   /* whether a round shadow crosses the wall, and there are no boxes */
+static int flickers; /* true if the boxes' appearance changes */
+static int shadow;   /* true if there are no boxes, but a round shadow that crosses the wall */
 
-/** Smooth noise of cells of a width. */
+/** Smooth noise with cells of a width. */
 static double texture(double x, double y, double width, uint64_t surface)
 {
     const double u = x / width + 1000, v = y / width + 1000, a = u - floor(u), b = v - floor(v);
@@ -39,7 +39,7 @@ static double texture(double x, double y, double width, uint64_t surface)
     return 0.1 + 0.8 * ((corner[0] * (1 - a) + corner[1] * a) * (1 - b) + (corner[2] * (1 - a) + corner[3] * a) * b);
 }
 
-/** Where a point is in a box's own axes. */
+/** A point in a box's own axes. */
 static void to_box(int box, int moment, const double x[3], double out[3])
 {
     const double angle = box ? 0 : TURN * moment, c = cos(angle), s = sin(angle);
@@ -49,7 +49,7 @@ static void to_box(int box, int moment, const double x[3], double out[3])
     out[2] = s * at[0] + c * at[2];
 }
 
-/** Where a ray meets a box; its colour there. 0: nowhere. */
+/** Intersects a ray with a box and returns the colour there; 0 if they do not meet. */
 static int hit(int box, int moment, const double eye[3], const double ray[3], int channel, double *colour)
 {
     const double far[3] = { eye[0] + ray[0], eye[1] + ray[1], eye[2] + ray[2] };
@@ -118,7 +118,7 @@ static void find(adcgs_stereo *s, adcgs_pool *pool)
         fail_msg("%s", error.text);
 }
 
-/** A rotation's angle, and about which axis most of it is, in degrees. */
+/** A rotation's angle about y, in degrees. */
 static double angle_about_y(const adcgs_stereo_pose *p)
 {
     return 2 * atan2(p->q[2], p->q[0]) * 180 / PI;
@@ -129,7 +129,7 @@ static void check_turning(const adcgs_stereo *s, const adcgs_stereo_body *b)
     for (uint32_t m = 1; m < s->n_moments; m++) {
         const double step = angle_about_y(&b->pose[m]) - angle_about_y(&b->pose[m - 1]);
         const double off = remainder(fabs(step) - 20, 360), tilt = hypot(b->pose[m].q[1], b->pose[m].q[3]) * 2 * 180 / PI;
-        print_message("moment %u: turns %.2f, tilts %.2f\n", m, step, tilt);
+        print_message("frame %u: rotation %.2f degrees, tilt %.2f degrees\n", m, step, tilt);
         assert_true(fabs(off) < 2);
         assert_true(tilt < 2.5);
     }
@@ -139,7 +139,7 @@ static void check_sliding(const adcgs_stereo *s, const adcgs_stereo_body *b)
 {
     for (uint32_t m = 1; m < s->n_moments; m++) {
         const double *p = b->pose[m].way, *q = b->pose[m - 1].way;
-        print_message("moment %u: slides %.4f %.4f %.4f\n", m, p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+        print_message("frame %u: translation %.4f %.4f %.4f\n", m, p[0] - q[0], p[1] - q[1], p[2] - q[2]);
         assert_true(fabs(p[1] - q[1] - STEP) < 0.005 && fabs(p[0] - q[0]) < 0.005 && fabs(p[2] - q[2]) < 0.015);
         assert_true(fabs(b->pose[m].q[0]) > 0.999);
     }
@@ -164,9 +164,9 @@ static void boxes_are_followed(void **state)
         common += b == turning + 1 && s.moving[i].in_place;
         still += b == turning + 1 && s.moving[i].in_place == ADCGS_PLACE_STILL;
     }
-    print_message("%u of the one, %u of the other, %u of none; of what turns %u in place, %u still\n", n[1], n[2], n[0],
-                  common, still);
-    assert_true(common > n[turning + 1] / 4 && still < n[turning + 1] / 20); /* it is always there, and never the same */
+    print_message("points: %u of the first body, %u of the second, %u of none; of the turning body %u in place, %u static\n",
+                  n[1], n[2], n[0], common, still);
+    assert_true(common > n[turning + 1] / 4 && still < n[turning + 1] / 20); /* many in place, almost none static */
     assert_true(n[1] >= n[2] && n[1] == s.body[0].n && n[2] == s.body[1].n);
     assert_true(right > 0.98 * (n[1] + n[2]) && n[1] + n[2] > n[0]);
     for (uint32_t b = 0; b < s.n_bodies; b++)
@@ -213,7 +213,7 @@ static void a_shadow_is_none(void **state)
     find(&s, NULL);
     for (uint32_t i = 0; i < s.n_moving; i++)
         still += s.moving[i].in_place == ADCGS_PLACE_STILL;
-    print_message("%u bodies among %u points, of which %u in place\n", s.n_bodies, s.n_moving, still);
+    print_message("%u bodies among %u points, %u of them static\n", s.n_bodies, s.n_moving, still);
     assert_true(s.n_moving > 60 * MOMENTS && still > 0.95 * s.n_moving);
     assert_int_equal(s.n_bodies, 0);
     adcgs_stereo_clear(&s);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Camera paths: flights through key frames, paths round the stored cameras, path files good and bad. */
+/** \file Camera paths: flights through key frames, paths around the stored cameras, valid and invalid path files. */
 #include "outside_files.h"
 
 #include "camera/rotation.h"
@@ -63,7 +63,7 @@ static void check_rotation(const double m[12])
         assert_true(fabs(cross[i] - z[i]) < 1e-12);
 }
 
-/** Any rotation becomes a unit quaternion and comes back, half turns too. */
+/** Any rotation becomes a unit quaternion and is restored from it, half turns too. */
 static void test_turns(void **state)
 {
     uint64_t seed = 5;
@@ -109,7 +109,10 @@ static void test_through_keys(void **state)
         }
 }
 
-/** Everywhere a rotation; time and lens within those of the keys around; without a jump in value, and if smooth in speed. */
+/**
+ * The pose is a rotation everywhere. Time and lens are within those of the neighbouring keys. Values do not jump, nor does the
+ * speed of smooth paths.
+ */
 static void test_smooth(void **state)
 {
     const double step = 1e-5;
@@ -172,7 +175,7 @@ static void test_steady(void **state)
     }
 }
 
-/** What two keys share stays; one key is a still. */
+/** Values equal in two keys stay constant; a single key is a still image. */
 static void test_standstill(void **state)
 {
     adcgs_camera_key keys[KEYS];
@@ -193,9 +196,9 @@ static void test_standstill(void **state)
     adcgs_camera_spline_clear(&spline);
 }
 
-/* ---- Round the stored cameras ---- */
+/* ---- Around the stored cameras ---- */
 
-/** Cameras on part of a circle round the focus, in a scrambled order, all looking at it. */
+/** Cameras on part of a circle around the focus, in a scrambled order, all looking at it. */
 static void make_ring(adcgs_rig *rig, adcgs_camera *cameras, int n, double whole)
 {
     *rig = (adcgs_rig){.n = n, .cameras = cameras, .focus = {1.0, -2.0, 0.5}, .distance = 3.0, .up = {0.0, 0.0, 1.0}};
@@ -207,7 +210,7 @@ static void make_ring(adcgs_rig *rig, adcgs_camera *cameras, int n, double whole
     }
 }
 
-/** Sine of the angle between where a camera looks and where the focus is. */
+/** Sine of the angle between a camera's direction and the direction to the focus. */
 static double off_focus(const adcgs_camera *camera, const double focus[3])
 {
     const double *m = camera->cam_to_world;
@@ -275,7 +278,7 @@ static void test_spiral(void **state)
         assert_int_equal(adcgs_camera_path_alloc(&frames, 60, NULL, &error), ADCGS_OK);
         adcgs_rig_spiral(&rig, &frames);
         double focus[3], least = 1e9, most = 0.0;
-        for (int i = 0; i < 3; i++) /* the first frame looks there from three units, give or take the radius */
+        for (int i = 0; i < 3; i++) /* the first frame looks there from three units, plus or minus the radius */
             focus[i] = rig.focus[i];
         for (int s = 0; s < frames.n; s++) {
             const adcgs_camera *camera = &frames.frame[s].camera;
@@ -366,7 +369,7 @@ static void test_bad_files(void **state)
     }
 }
 
-/** Cameras that draw are pinholes. */
+/** Rendering cameras must be pinholes. */
 static void test_bent_lenses(void **state)
 {
     static const char *const bent[][2] = {{"\"k1\":0.1", "distortion 0.1"}, {"\"is_fisheye\":true", "OPENCV_FISHEYE"},

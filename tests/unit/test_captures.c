@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Scenes as other people film them: where their cameras stand, their alpha, their exposures, their shapes. */
+/** \file Scenes as other users film them: camera places, alpha, exposures, shapes. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "io/image.h"
@@ -107,12 +107,12 @@ static void other_paths_are_what_they_say(void **state)
             assert_memory_equal(first.ahead, a.ahead, sizeof a.ahead);
         }
     }
-    /* Three at a time are side by side; they drive on. */
+    /* Three cameras at a time are side by side, and drive forward. */
     const axis left = axis_of("street", ADCGS_SPLIT_TRAIN, 0), right = axis_of("street", ADCGS_SPLIT_TRAIN, 2);
     const axis last = axis_of("street", ADCGS_SPLIT_TRAIN, views_of("street", ADCGS_SPLIT_TRAIN) - 1);
     assert_true(left.time == right.time && left.eye[1] == right.eye[1] && right.eye[0] - left.eye[0] > 0.9);
     assert_true(left.ahead[0] < -0.4 && right.ahead[0] > 0.4 && last.eye[1] - left.eye[1] > 7.9 && last.time == 1.0);
-    /* Who tests looks at a time that nobody is trained on. */
+    /* Test views have times between those of training. */
     assert_true(fabs(axis_of("tripod", ADCGS_SPLIT_TEST, 3).time * 59.0 - 11.5) < 1e-9);
 }
 
@@ -210,7 +210,7 @@ static void grounds_are_composited_after_exposure(void **state)
     remove_folder(folder);
 }
 
-/* A static scene's frames have no time, those of a film have one. */
+/* Frames of a static scene have no time, those of a video have one. */
 static void static_scenes_have_no_times(void **state)
 {
     static const char *const names[2] = {"sweep", "tripod"};
@@ -230,7 +230,7 @@ static void static_scenes_have_no_times(void **state)
     }
 }
 
-/* Distance of a point from the line that a shape is thick about. */
+/* Distance of a point from the centre line of a shape. */
 static double off_line(const adcgs_trace_object *object, const double p[3])
 {
     double best = 1e9, bow = object->shape == ADCGS_SHAPE_HAIR ? object->size[1] : 0.0;

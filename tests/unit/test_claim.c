@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Claims: whose they are follows from processes where these can be asked, not from clocks, which are set. */
+/** \file Claims: the owner is determined by processes where these can be queried, not by clocks, which may be wrong. */
 #define BEAT 1 /* second */
-#include "io/claim.c" /* before anything global of the test can be shadowed */
+#include "io/claim.c" /* before any global name of the test can be shadowed */
 
 #include "outside_files.h"
 
@@ -9,7 +9,7 @@
 
 static const char *path;
 
-/** Shift the time of the claim. */
+/** Shifts the time of the claim. */
 static void set_age(double seconds)
 {
     struct timespec times[2];
@@ -69,7 +69,7 @@ static pid_t begin_owner(void)
     return child;
 }
 
-/** On one machine an owner that lives has its claim, and one that does not has not, at any time of day. */
+/** On one machine a running owner keeps its claim, and an ended one loses it, at any file time. */
 static void processes_are_believed(void **state)
 {
     static const double ages[] = { 0, 600, -3600 };
@@ -82,13 +82,13 @@ static void processes_are_believed(void **state)
     }
     kill(child, SIGKILL);
     siginfo_t info;
-    assert_int_equal(waitid(P_PID, (id_t)child, &info, WEXITED | WNOWAIT), 0); /* its number is still there */
+    assert_int_equal(waitid(P_PID, (id_t)child, &info, WEXITED | WNOWAIT), 0); /* its number is still in use */
     set_age(0);
     expect_taken();
     assert_int_equal(waitpid(child, NULL, 0), child);
 }
 
-/** A number that was given to another process since. */
+/** A process number that was reused by another process. */
 static void numbers_are_given_again(void **state)
 {
     char text[TEXT_MAX];
@@ -96,7 +96,7 @@ static void numbers_are_given_again(void **state)
     find_own(&own);
     (void)state;
     if (!own.began) {
-        print_message("skipped: /proc does not say when processes began\n");
+        print_message("skipped: /proc does not give start times of processes\n");
         skip();
     }
     const long other = (long)getppid();
@@ -120,7 +120,7 @@ static void *touch_often(void *argument)
     return NULL;
 }
 
-/** On another machine the file's time alone counts, and whether it changes. */
+/** For an owner on another machine, only the file's time and its changes count. */
 static void times_that_go_on_are_believed(void **state)
 {
     static const double ages[] = { 600, -3600 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Parsing of numbers and options, text made safe, and the JSON writer. */
-#include "config.h" /* for the declarations that it switches on in system headers */
+/** \file Parsing of numbers and options, escaping of text, and the JSON writer. */
+#include "config.h" /* for the declarations that it enables in system headers */
 
 #include "cli/cli.h"
 
@@ -91,7 +91,7 @@ typedef struct values {
     uint64_t size;
 } values;
 
-/** Parse the words after the program's name; standard error goes nowhere. */
+/** Parses the words after the program's name; discards standard error. */
 static int parse(values *v, const char *const *words, int *first)
 {
     static const char *const choices[] = {"red", "green", NULL};
@@ -133,7 +133,7 @@ static void test_options(void **state)
     assert_int_equal(PARSE(&v, &first, "-t", "-", "file", "--", "-f"), -1);
     assert_string_equal(v.text, "-");
     int quiet = 0;
-    assert_int_equal(PARSE(&v, &first, "-q", "file"), 2); /* of programs that have it */
+    assert_int_equal(PARSE(&v, &first, "-q", "file"), 2); /* only programs with this option accept it */
     v.quiet = &quiet;
     assert_int_equal(PARSE(&v, &first, "file"), -1);
     assert_false(quiet);
@@ -158,7 +158,7 @@ static void test_mistakes(void **state)
     assert_int_equal(PARSE(&v, &first, "-V"), 0);
 }
 
-/** What the function prints on standard error, which is no terminal then. */
+/** Captures the function's output on standard error, which then is no terminal. */
 static void catch_stderr(char text[512], void (*print)(const adcgs_cli *cli), const adcgs_cli *cli)
 {
     FILE *file = tmpfile();
@@ -190,7 +190,7 @@ static void show_progress(const adcgs_cli *cli)
         progress.last -= progress.every;
         adcgs_progress_show(&progress, "more");
     }
-    assert_true(*cli->quiet || progress.every + progress.grace == 30.0); /* ever more rarely, but no end of it */
+    assert_true(*cli->quiet || progress.every + progress.grace == 30.0); /* the interval grows, but only up to a limit */
     adcgs_progress_clear(&progress);
     adcgs_cli_note(cli, "done");
 }
@@ -201,7 +201,7 @@ static void rest(double seconds)
     nanosleep(&time, NULL);
 }
 
-/** What is kept says by itself that it lasts, once what it shows does not come in time; nothing when nothing is shown. */
+/** Kept progress prints its age if no new one comes in time, and nothing after the progress is cleared. */
 static void keep_progress(const adcgs_cli *cli)
 {
     adcgs_progress progress;
@@ -220,7 +220,7 @@ static void keep_progress(const adcgs_cli *cli)
     adcgs_cli_note(cli, "done");
 }
 
-/** Work that lasts, of which there is nothing to count. */
+/** Long work without a count. */
 static void keep_working(const adcgs_cli *cli)
 {
     adcgs_progress progress;
@@ -234,7 +234,7 @@ static void keep_working(const adcgs_cli *cli)
     adcgs_progress_end(&progress);
 }
 
-/* Without a terminal there is a plain line now and then; with --quiet nothing but what went wrong. */
+/* Without a terminal, a plain line appears now and then; with --quiet, only errors. */
 static void test_progress(void **state)
 {
     int quiet = 0;
@@ -259,7 +259,7 @@ static void test_progress(void **state)
     assert_null(strstr(text, "ago"));
 }
 
-/* What is no UTF-8, as Unicode's table 3-7 has it: lone and missing continuations, overlong forms, surrogates, beyond the end. */
+/* Invalid UTF-8 by Unicode's table 3-7: lone and missing continuations, overlong forms, surrogates, beyond the end. */
 static void test_utf8(void **state)
 {
     static const char *const bad[] = {"\x80", "\xbf", "\xc3", "\xc3(", "\xc0\x80", "\xc1\xbf", "\xe0\x9f\xbf", "\xe2\x82",
@@ -282,7 +282,7 @@ static void test_utf8(void **state)
     free(mended);
 }
 
-/* Nothing that a terminal obeys comes through, whatever the text; the rest does as it is. */
+/* No control character of any text reaches a terminal; all other characters are unchanged. */
 static void test_shown(void **state)
 {
     static const struct { const char *text, *shown, *cell; int columns; } cases[] = {
@@ -346,7 +346,7 @@ static void test_json(void **state)
                       "    null\n  ],\n  \"empty\": {},\n  \"yes\": true\n}\n");
 }
 
-/* Whatever bytes a string holds, JSON comes out, and no terminal obeys it; who reads it finds the characters that were some. */
+/* Strings of any bytes give valid JSON without control characters for a terminal. Valid characters survive. */
 static void test_json_texts(void **state)
 {
     adcgs_json json;
@@ -360,7 +360,7 @@ static void test_json_texts(void **state)
                       "\"\\u001B\":\"\\u009B\\u202E\\uD83C\\uDFA5\\t\"}\n");
 }
 
-/* A full disk is noticed; what is nested too deep fails, and nothing is written. */
+/* A full disk is an error. Nesting too deep fails, and nothing is written. */
 static void test_json_failures(void **state)
 {
     adcgs_json json;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Points in cells: the nearest is that of all, whatever the cells are, and what is part of a body is none. */
-#include "config.h" /* for the declarations that it switches on in system headers */
+/** \file Points in cells: the nearest one equals that of an exhaustive search for any cells. Points of a body are ignored. */
+#include "config.h" /* for the declarations that it enables in system headers */
 
 #include "grad/random.h"
 #include "stereo/cloud.h"
@@ -22,7 +22,7 @@ static double random_in(double low, double high)
     return low + (high - low) * adcgs_random_unit(7, 0, thrown++);
 }
 
-/** In clusters, some of them at the same place, some of them taken. */
+/** Points in clusters, some of them at the same place, some of them in a body. */
 static int make_points(void **state)
 {
     for (uint32_t i = 0; i < POINTS; i++) {
@@ -80,7 +80,7 @@ static void nearest_is_that_of_all(void **state)
         }
         adcgs_cloud_clear(&cloud);
     }
-    print_message("%d of %d queries met a point\n", met, (int)ADCGS_COUNTOF(try) * QUERIES);
+    print_message("%d of %d queries found a point\n", met, (int)ADCGS_COUNTOF(try) * QUERIES);
     assert_true(met > QUERIES);
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Colours on their way in: EXR is linear light unless it says otherwise, and becomes sRGB; 16 bits among 8; alpha over the
- * background; what is no number, or of other primaries, is refused. Against the formulae of IEC 61966-2-1, in double.
+ * Colours of input images: EXR is linear light by default and becomes sRGB; 16 bits next to 8; alpha over the background. NaN and
+ * other primaries are refused. The reference is IEC 61966-2-1, in double.
  */
 #include "outside_files.h"
 
@@ -13,7 +13,7 @@
 
 enum { WIDTH = 9, HEIGHT = 3, PIXELS = WIDTH * HEIGHT };
 
-/** Of one row; the others have multiples of it. */
+/** The levels of one row; the others have multiples of them. */
 static const float levels[WIDTH] = {0.0f, 0.0005f, 0.0031308f, 0.01f, 0.18f, 0.5f, 1.0f, 4.0f, -0.125f};
 
 static adcgs_scene *scene;
@@ -23,7 +23,7 @@ static double curve(double linear)
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
 }
 
-/** What channel c (R, G, B) of a pixel holds in the files made here. */
+/** The value of channel c (R, G, B) of a pixel in the files made here. */
 static float level(int c, int x, int y)
 {
     return levels[x] * (float)(1 + y) / (float)(1 + c);
@@ -34,10 +34,10 @@ static float alpha_of(int x, int y)
     return y == 1 ? 0.0f : (float)(1 + x) / 16.0f;
 }
 
-/** EXR that says nothing of its curve; with alpha, colours are multiplied by it. primaries: NULL for none named. */
+/** Writes an EXR file without a statement on its curve. With alpha, colours are premultiplied. primaries: NULL for none named. */
 static void put_exr(const char *name, int has_alpha, const exr_attr_chromaticities_t *primaries, float odd)
 {
-    static const char *const names[] = {"A", "B", "G", "R"}; /* in the order of the alphabet */
+    static const char *const names[] = {"A", "B", "G", "R"}; /* alphabetical order */
     const exr_attr_box2i_t window = {.min = {{{0, 0}}}, .max = {{{WIDTH - 1, HEIGHT - 1}}}};
     const exr_attr_v2f_t centre = {{{0.0f, 0.0f}}};
     exr_context_t file;
@@ -66,7 +66,7 @@ static void put_exr(const char *name, int has_alpha, const exr_attr_chromaticiti
     assert_int_equal(exr_finish(&file), EXR_ERR_SUCCESS);
 }
 
-/** Our own writer's, with what v/divisor of the samples gives. */
+/** Writes a file with our own writer; the samples are multiples of 1/divisor. */
 static void put_levels(const char *name, int bits, int channels, uint32_t divisor)
 {
     adcgs_image image;
@@ -87,12 +87,12 @@ static void expect_good(adcgs_status status)
         fail_msg("%s", error.text);
 }
 
-/** The scene's training views are what follows the first frame. */
+/** The scene's training views are the frames after the first. */
 static void open_frames(const char *json)
 {
     put_text("transforms.json", json);
     expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
-    assert_int_equal(scene->colour_space, 1); /* sRGB, which is what the stream says of itself */
+    assert_int_equal(scene->colour_space, 1); /* sRGB, the value that the stream carries */
 }
 
 static int close_scene(void **state)
@@ -125,7 +125,7 @@ static void test_linear(void **state)
     free(rgb);
 }
 
-/** Light is taken back by stops of each channel; what was cut off at white is not known, what was not does not go beyond. */
+/** The correction takes back the stops of each channel. Overexposed pixels become unknown; others are limited to white. */
 static void test_stops(void **state)
 {
     static const float stops[2][3] = {{1.0f, 0.5f, 2.0f}, {-1.0f, 0.0f, -4.0f}};
@@ -154,7 +154,7 @@ static void test_stops(void **state)
     free(taken);
 }
 
-/** The curve is for straight colours, and the background comes last, as with every other picture. */
+/** The curve applies to straight colours, and the background comes last, as for every other image. */
 static void test_linear_alpha(void **state)
 {
     put_exr("alpha.exr", 1, NULL, 0.0f);
@@ -169,7 +169,7 @@ static void test_linear_alpha(void **state)
     free(rgb);
 }
 
-/** What we write ourselves is sRGB, says so, and comes back as it is. */
+/** Our own EXR files are labelled sRGB and read back unchanged. */
 static void test_labelled(void **state)
 {
     put_levels("own.exr", 0, 3, 1000);
@@ -181,7 +181,7 @@ static void test_labelled(void **state)
     free(rgb);
 }
 
-/** Pictures of 16 bits among those of 8: each value is its sample over the largest, also as they are kept for training. */
+/** Images of 16 bits among images of 8: each value is its sample over the largest, also in the trainer's store. */
 static void test_sixteen(void **state)
 {
     static const char *const names[] = {"8.ppm", "16.ppm", "8.tif", "16.tif", "8.png", "16.png"};
@@ -211,7 +211,7 @@ static void test_sixteen(void **state)
     adcgs_pool_free(&pool);
 }
 
-/** 16 bits with alpha: straight in the file, and put over the background. */
+/** 16 bits with alpha: straight in the file, then composited over the background. */
 static void test_sixteen_alpha(void **state)
 {
     static const char *const names[] = {"a.png", "a.tif"};
@@ -226,7 +226,7 @@ static void test_sixteen_alpha(void **state)
             for (uint32_t i = 0; i < PIXELS; i++) {
                 const double a = (double)((4 * i + 3) * 7919u % 65536u) / 65535, b = (double)options.background[c];
                 const double expected = a * ((4 * i + c) * 7919u % 65536u) / 65535 + (1 - a) * b;
-                /* TIFF keeps colours that were multiplied by alpha, in 16 bits */
+                /* TIFF keeps premultiplied colours, in 16 bits */
                 assert_true(fabs((double)rgb[c * PIXELS + i] - expected) < 2e-5);
             }
         free(rgb);

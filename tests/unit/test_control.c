@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Steering: what is planned for a size, how lambda follows, where runs land, and that stopping changes nothing. */
+/** \file Rate control: the plan for a size, how lambda adapts, the final size or quality, and that stopping changes nothing. */
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
@@ -15,7 +15,7 @@ static adcgs_train_config config_for(adcgs_train_target target, double value)
     c.iterations = ITERATIONS;
     c.start_anchors = 100;
     c.densify_every = 20;
-    c.stereo = 0; /* matches the pictures anew for each trainer; the stream's size is what counts here */
+    c.stereo = 0; /* stereo would run again for each trainer; only the stream's size counts here */
     c.params.n_fg = 8; /* so that a size can be used up */
     c.densify_threshold = 1e-6f;
     c.freeze_from = 0.92f; /* long enough to stop in */
@@ -89,11 +89,11 @@ static adcgs_status pretended_bytes(void *user, const adcgs_trainer *t, adcgs_by
     return ADCGS_OK;
 }
 
-/** Too many bytes raise lambda, step by step, up to a bound, where anchors go; too few lower it. */
+/** Too many bytes raise lambda step by step up to a bound, where anchors are pruned. Too few lower it. */
 static void lambda_follows_the_bytes(void **state)
 {
     adcgs_train_config config = config_for(ADCGS_TARGET_SIZE, 60000);
-    config.time_limit = 1000; /* nothing is sought before */
+    config.time_limit = 1000; /* prevents the search for lambda beforehand */
     for (int much = 0; much < 2; much++) {
         uint64_t features = much ? 200000 : 10000;
         adcgs_trainer *t = make(&config, pretended_bytes);
@@ -115,14 +115,14 @@ static void lambda_follows_the_bytes(void **state)
     }
 }
 
-/** Features of a run at its lambda: those of a room of 50,000 bytes at *user. */
+/** Features of a run at its lambda; *user is the lambda at which they have 50,000 bytes. */
 static adcgs_status bytes_of_lambda(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *e)
 {
     uint64_t features = (uint64_t)(50000 * pow(t->lambda / *(const double *)user, -0.3));
     return pretended_bytes(&features, t, bytes, e);
 }
 
-/** Where bytes do not suit, another lambda is tried from where rate began, until one does; not where time counts. */
+/** If the bytes do not fit, another lambda is tried from the start of the rate, until one fits; not with a time limit. */
 static void lambda_is_sought(void **state)
 {
     adcgs_train_config config = config_for(ADCGS_TARGET_SIZE, 60000);
@@ -144,7 +144,7 @@ static void lambda_is_sought(void **state)
             assert_int_equal(adcgs_rate_search_step(t, 0.63, &error), ADCGS_OK);
             tries++;
         }
-        print_message("%u tries: %g times what was right\n", tries, t->lambda / right);
+        print_message("%u tries: %g times the right lambda\n", tries, t->lambda / right);
         assert_true(tries > 1 && t->iteration == 150 && t->begin.size == 0);
         assert_true(fabs(log(t->lambda / right)) < 0.5);
         adcgs_trainer_free(&t);
@@ -155,7 +155,7 @@ static void lambda_is_sought(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** A quality that is missed in the end is tried once more, with a smaller lambda; one that is met, or missed again, is let be. */
+/** A quality missed at the end causes one more run with a smaller lambda. A quality that is met, or missed again, does not. */
 static void what_was_missed_is_tried_again(void **state)
 {
     const adcgs_train_config config = config_for(ADCGS_TARGET_PSNR, 30);
@@ -177,7 +177,7 @@ static void what_was_missed_is_tried_again(void **state)
     }
 }
 
-/* ---- Landing ---- */
+/* ---- Final size and quality ---- */
 
 static adcgs_status real_bytes(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *e)
 {
@@ -199,7 +199,7 @@ static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
         fail_msg("%s", error.text);
 }
 
-/** More anchors than a size can hold after so short a run: levels, or anchors, have to give way. */
+/** More anchors than a size can hold after so short a run: levels or anchors have to be reduced. */
 static adcgs_train_config roomy_config(adcgs_train_target target, double value)
 {
     adcgs_train_config c = config_for(target, value);
@@ -215,20 +215,20 @@ static void runs_land_on_sizes(void **state)
         adcgs_trainer *t = make(&config, real_bytes);
         run(t, NULL, NULL);
         const uint64_t bytes = final_bytes(t);
-        print_message("asked for %d bytes, got %llu\n", size, (unsigned long long)bytes);
+        print_message("target %d bytes, result %llu bytes\n", size, (unsigned long long)bytes);
         assert_true(bytes <= (uint64_t)size && bytes > 0.97 * size);
         adcgs_trainer_free(&t);
     }
 }
 
-/** A run that never came to round its values, as one short of time, lands all the same. */
+/** A run that never rounded its values, as one short of time, still meets its size. */
 static void runs_land_without_rounding(void **state)
 {
     adcgs_train_config config = roomy_config(ADCGS_TARGET_SIZE, 12000);
     config.round_from = config.freeze_from = 1.5f;
     adcgs_trainer *t = make(&config, real_bytes);
     run(t, NULL, NULL);
-    print_message("asked for 12000 bytes, got %llu\n", (unsigned long long)final_bytes(t));
+    print_message("target 12000 bytes, result %llu bytes\n", (unsigned long long)final_bytes(t));
     assert_true(final_bytes(t) <= 12000 && final_bytes(t) > 0.97 * 12000);
     adcgs_trainer_free(&t);
 }
@@ -240,12 +240,12 @@ static void runs_land_on_qualities(void **state)
     double psnr;
     run(t, NULL, NULL);
     assert_int_equal(adcgs_sample_psnr(t, UINT32_MAX, &psnr, &error), ADCGS_OK);
-    print_message("asked for 22 dB, got %.3f\n", psnr);
+    print_message("target 22 dB, result %.3f dB\n", psnr);
     assert_true(psnr > 21.95 && psnr < 22.05);
     adcgs_trainer_free(&t);
 }
 
-/** Goes on to the end by way of every stop: each time what was stored goes into a new trainer. */
+/** Runs to the end through every stop. Each time a new trainer continues from the stored state. */
 static adcgs_trainer *run_in_pieces(const adcgs_train_config *config)
 {
     static const uint32_t stops[] = { 50, 70, 130, 180, 190 };
@@ -266,13 +266,13 @@ static adcgs_trainer *run_in_pieces(const adcgs_train_config *config)
     return t;
 }
 
-/** Wherever a run stops, going on from what it stored gives what never stopping gives. */
+/** A run that stops anywhere and continues from its stored state ends like a run that never stops. */
 static void stopping_changes_nothing(void **state)
 {
     static const double values[] = { [ADCGS_TARGET_SIZE] = 12000, [ADCGS_TARGET_PSNR] = 22 };
     for (int target = ADCGS_TARGET_SIZE; target <= ADCGS_TARGET_PSNR; target++) {
         adcgs_train_config config = roomy_config((adcgs_train_target)target, values[target]);
-        config.max_anchors = 300; /* bytes need not be met, only be the same */
+        config.max_anchors = 300; /* bytes need not meet the target, only be the same */
         adcgs_trainer *through = make(&config, real_bytes), *pieces = run_in_pieces(&config);
         run(through, NULL, NULL);
         assert_true(pieces->lambda == through->lambda && final_bytes(pieces) == final_bytes(through));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Rate-distortion curves against values worked out by hand. Sizes are logarithms to base 2: their means are easy. */
+/** \file Rate-distortion curves against values calculated by hand. Sizes are logarithms to base 2: their means are easy. */
 #include "metric/curve.h"
 
 #include <math.h>
@@ -30,7 +30,7 @@ static double difference(const double (*reference)[2], int n_reference, const do
 static void assert_log2(double percent, double mean)
 {
     if (fabs(percent - 100 * (exp2(mean) - 1)) > 1e-9)
-        fail_msg("%.12f %% instead of %.12f %%", percent, 100 * (exp2(mean) - 1));
+        fail_msg("%.12f %%, expected %.12f %%", percent, 100 * (exp2(mean) - 1));
 }
 
 static void test_bd_rate(void **state)

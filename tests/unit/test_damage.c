@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Damaged, cut and foreign streams: every one gives a clean error or something usable, never anything else. */
+/** \file Damaged, cut and foreign streams: each gives a clean error or a usable result, never anything else. */
 #include "random_model.h"
 #include "stream_edit.h"
 
@@ -39,7 +39,7 @@ static void make_bytes(adcgs_stream *stream, adcgs_buffer *bytes, uint32_t segme
         fail_msg("%s", error.text);
 }
 
-/** Whatever was decoded of a model must be valid, and equal to the original as far as it goes. */
+/** Every decoded part of a model must be valid and equal the original. */
 static void check_usable(const adcgs_stream *whole, const adcgs_stream *part)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -71,7 +71,7 @@ static void test_cut_anywhere(void **state)
     (void)state;
     make_bytes(&stream, &bytes, 2, 70, 4, 1);
     for (size_t n = 0; n < bytes.size; n++) {
-        uint8_t *copy = malloc(n + (n == 0)); /* exactly n bytes: a sanitizer sees one too far */
+        uint8_t *copy = malloc(n + (n == 0)); /* exactly n bytes: a sanitizer detects a read beyond */
         assert_non_null(copy);
         memcpy(copy, bytes.data, n);
         const adcgs_status status = read_stream(&part, copy, n, 0, &error);
@@ -136,7 +136,7 @@ static void test_flip_every_byte(void **state)
             bytes.data[i] ^= (uint8_t)(1 << bit);
             const adcgs_status status = read_stream(&part, bytes.data, bytes.size, 0, &error);
             if (status == ADCGS_OK)
-                fail_msg("flipping bit %d of byte %zu went unnoticed", bit, i);
+                fail_msg("flipped bit %d of byte %zu was not detected", bit, i);
             assert_true(error.text[0] != 0 && !strchr(error.text, '\n'));
             bytes.data[i] ^= (uint8_t)(1 << bit);
         }
@@ -144,7 +144,7 @@ static void test_flip_every_byte(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** Damage under valid checksums, in streams of which every second has no digest that would notice. */
+/** Damage under valid checksums. Every second stream has no digest that would detect it. */
 /* REQ-CONF-005 */
 static void test_malice(void **state)
 {
@@ -183,7 +183,7 @@ static void test_malice(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** Copy a stream with one more chunk in front of ENDC, everything else made consistent. */
+/** Copies a stream with one more chunk in front of ENDC, and makes everything else consistent. */
 static void insert_chunk(adcgs_buffer *out, const adcgs_buffer *in, uint32_t type)
 {
     const size_t tail = ADCGS_CHUNK_BYTES + 12;
@@ -221,7 +221,7 @@ static void test_unknown_chunks(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** What follows the elements that name version and tools may differ in other versions: it is not looked at. */
+/** Other versions may change everything after the elements for version and tools: it is not read. */
 /* REQ-STRM-010 */
 static void test_future_head(void **state)
 {
@@ -243,7 +243,7 @@ static void test_future_head(void **state)
     adcgs_buffer_clear(&bytes);
 }
 
-/** A stream from which the last layers were taken plays with what is left. */
+/** A stream without its last layers plays with the rest. */
 /* REQ-STRM-009, REQ-LATN-007, REQ-STRM-038 */
 static void test_layers_taken_out(void **state)
 {
@@ -279,7 +279,7 @@ static adcgs_status read_layers(adcgs_stream *stream, const adcgs_buffer *bytes,
     return adcgs_stream_read(stream, adcgs_span_read, &s, &options, NULL, NULL, error);
 }
 
-/** What stands in layers that are left out is not looked at, but for the checksums of chunks and that there is such a layer. */
+/** Data in layers that are left out is not read, except for the checksums of chunks and the existence of the layer. */
 /* REQ-STRM-042 */
 static void test_layers_left_out(void **state)
 {
@@ -308,7 +308,7 @@ static void test_layers_left_out(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** A length that promises a gigabyte costs no gigabyte. */
+/** A length field of a gigabyte allocates no gigabyte. */
 /* REQ-STRM-004, REQ-STRM-034, REQ-CONF-005 */
 static void test_false_length(void **state)
 {
@@ -347,10 +347,10 @@ static void put_zeros(adcgs_buffer *out, size_t length)
     adcgs_chunk_end(out, begin);
 }
 
-/** The stream with two chunks of zeros before its end that make it so long. */
+/** The stream, extended to this size by two chunks of zeros before its end. */
 static void make_long(adcgs_buffer *out, const adcgs_buffer *bytes, size_t size)
 {
-    const size_t end = bytes->size - ADCGS_CHUNK_BYTES - 12; /* of what stands before ENDC */
+    const size_t end = bytes->size - ADCGS_CHUNK_BYTES - 12; /* end of the data before ENDC */
     adcgs_buffer_init(out);
     adcgs_write_bytes(out, bytes->data, end);
     put_zeros(out, 1U << 21);
@@ -360,7 +360,7 @@ static void make_long(adcgs_buffer *out, const adcgs_buffer *bytes, size_t size)
     adcgs_repair_stream(out->data, out->size, 0);
 }
 
-/** The bound of level 1 on the bytes of a stream, for which no vector is small enough. */
+/** Level 1's bound on the bytes of a stream, for which any vector would be too large. */
 /* REQ-STRM-004, REQ-STRM-034 */
 static void test_stream_bytes(void **state)
 {

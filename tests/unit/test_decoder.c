@@ -129,7 +129,7 @@ static void test_segments_by_time(void **state)
             adcgs_primitives p;
             assert_int_equal(adcgs_get_primitives(d, times[i], &p, NULL), ADCGS_OK);
             assert_int_equal(p.n, (m->n + 63) / 64 * 64 * 4);
-            for (uint32_t j = 0; j < m->n; j++) /* masks tell the segments apart */
+            for (uint32_t j = 0; j < m->n; j++) /* masks distinguish the segments */
                 for (uint32_t k = 0; k < 4; k++)
                     assert_int_equal(p.opacity[(j / 64 * 4 + k) * 64 + j % 64] > 0, m->mask[j] >> k & 1);
         }
@@ -138,8 +138,8 @@ static void test_segments_by_time(void **state)
 }
 
 /**
- * REQ-PRIM-019: digests of splats, by time, each with its own segment's masks. REQ-REND-011: of a frame, its samples in order
- * as little-endian bytes.
+ * REQ-PRIM-019: digests of splats, by time, each with its own segment's masks. REQ-REND-011: of a frame, its samples in order as
+ * little-endian bytes.
  */
 static void test_digests(void **state)
 {

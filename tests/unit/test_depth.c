@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Depth and coverage: the renderer's pass against the binary64 reference and against the light that frames let through; the
- * decoder's against the reference over the primitives it gives; the same on every CPU level and number of threads; frames do
- * not change for it. What adcgs-dec makes of frames with it.
+ * Depth and coverage. The renderer's pass against the binary64 reference and against the frames' transmittance; the decoder's
+ * against the reference over its primitives. Both are the same on every CPU level and number of threads, and leave frames
+ * unchanged. Also the frames that adcgs-dec makes with them.
  */
 #include "config.h"
 
@@ -40,7 +40,7 @@ static void reference_sums(const scene_splats *splats, const adcgs_view *view, d
     free(scene.data);
 }
 
-/** Depth, or frame with its transmittance by pixel, of one setting. */
+/** Renders depth, or a frame with its transmittance by pixel, for one setting. */
 static void draw(const scene_splats *s, const adcgs_view *view, adcgs_cpu_level cpu, int threads, float *sums, float *light)
 {
     const adcgs_primitives p = scene_primitives(s);
@@ -126,7 +126,7 @@ static scene_splats copy_primitives(const adcgs_primitives *p)
     return s;
 }
 
-/** Depth in world units against the reference's, where there is enough to see. */
+/** Depth in world units against the reference's, for pixels with enough coverage. */
 static void check_depth(const adcgs_stream *stream, const adcgs_primitives *p, const float *depth, const float *alpha)
 {
     static double sums[3 * PIXELS];
@@ -147,7 +147,7 @@ static void check_depth(const adcgs_stream *stream, const adcgs_primitives *p, c
     adcgs_free(NULL, s.data);
 }
 
-/** Where there is nothing to see: the whole scene lies behind the camera. */
+/** An empty view: the whole scene lies behind the camera. */
 static void check_nothing(adcgs_decoder *d, const adcgs_stream *stream)
 {
     static float rgb[3 * PIXELS], depth[PIXELS], alpha[PIXELS];
@@ -205,7 +205,7 @@ static void test_decoder(void **state)
     adcgs_buffer_clear(&bytes);
 }
 
-/** What adcgs-dec shows: colours over any background make the frame again; another stream's frame beside the first. */
+/** The output of adcgs-dec: colours over any background reproduce the frame; another stream's frame next to the first. */
 static void test_canvas(void **state)
 {
     static float rgb[3 * PIXELS];
@@ -217,7 +217,7 @@ static void test_canvas(void **state)
     adcgs_info info;
     adcgs_canvas canvas;
     adcgs_frame frame = {WIDTH, HEIGHT, rgb};
-    make_stream(&stream, &bytes, 2); /* few splats let light through */
+    make_stream(&stream, &bytes, 2); /* few splats leave some transmittance */
     assert_int_equal(adcgs_open_memory(&d, bytes.data, bytes.size, NULL, NULL), ADCGS_OK);
     assert_int_equal(adcgs_get_info(d, &info, sizeof info, NULL), ADCGS_OK);
     assert_int_equal(adcgs_render(d, &eye, 0.01, &frame, NULL), ADCGS_OK);

@@ -53,7 +53,7 @@ static adcgs_status write_as(const char *name, adcgs_depth kind, int has_alpha, 
     return write_curve(name, kind, has_alpha, has_z, 0);
 }
 
-/** A channel of a file, every sample as binary32. The others are read too: OpenEXRCore 3.1 does not always leave some out. */
+/** Reads a channel, every sample as binary32. It reads the others too: OpenEXRCore 3.1 does not always skip some of them. */
 static void read_channel(const char *path, const char *name, exr_pixel_type_t type, float *out)
 {
     static float others[PIXELS];
@@ -93,7 +93,7 @@ static double linear_light(double v)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-/** What a channel of colour holds; alpha has a share of 1 where there is none. */
+/** The stored value of a colour channel; without alpha its factor is 1. */
 static double stored(int i, int c, int has_alpha, int linear)
 {
     const double value = rgb[3 * i + c], part = has_alpha && alpha[i] > 0.0f ? (double)alpha[i] : 1.0;
@@ -130,7 +130,7 @@ static void check_channels(const char *name, int half, int linear)
     assert_memory_equal(plane, depth, sizeof depth);
 }
 
-/** Straight colours, as our reader gives them; Z is left out, and never taken for alpha. */
+/** Expects straight colours from our reader. Z is skipped, and never taken for alpha. */
 static void check_image(const char *name, int channels, double tolerance)
 {
     adcgs_image image;
@@ -171,7 +171,7 @@ static void fill_beyond(void)
             rgb[3 * i + c] = alpha[i] * ((float)((i * 7 + c * 31) % 101) / 50.0f - 0.5f);
 }
 
-/** Colours go through the curve while they are straight; alpha and depth stay; our reader takes them back. */
+/** Straight colours go through the curve; alpha and depth stay unchanged; our reader inverts the curve. */
 static void test_linear(void **state)
 {
     fill_beyond();
@@ -189,7 +189,7 @@ static void test_linear(void **state)
     check_image("ld.exr", 3, 1e-3);
 }
 
-/** Colours that come straight are multiplied by alpha when they are written. */
+/** Straight colours are premultiplied when they are written. */
 static void test_linear_straight(void **state)
 {
     static float straight[4 * PIXELS], kept[4 * PIXELS];
@@ -226,7 +226,7 @@ static void transform(const double point[3], const exr_attr_m44f_t *m, double ou
     }
 }
 
-/** Points in front of the camera go where the camera of camera.h puts them. */
+/** Projects points in front of the camera to the same place as the camera of camera.h. */
 static void check_matrices(const exr_attr_m44f_t *to_camera, const exr_attr_m44f_t *to_ndc)
 {
     for (int n = 0; n < 50; n++) {
@@ -255,7 +255,7 @@ static void test_attributes(void **state)
     assert_int_equal(write_as("a.exr", ADCGS_DEPTH_HALF, 1, 1), ADCGS_OK);
     assert_int_equal(exr_start_read(&file, in("a.exr"), NULL), EXR_ERR_SUCCESS);
     check_matrices(attribute(file, "worldToCamera", EXR_ATTR_M44F)->m44f, attribute(file, "worldToNDC", EXR_ATTR_M44F)->m44f);
-    /* The window's edges at distance 1, x to the left and y up, are where the camera sees the picture's. */
+    /* The window's edges at distance 1, with x to the left and y up, are the edges of the camera's image. */
     const exr_attr_v2f_t *centre = attribute(file, "screenWindowCenter", EXR_ATTR_V2F)->v2f;
     const double width = attribute(file, "screenWindowWidth", EXR_ATTR_FLOAT)->f;
     assert_true(fabs(centre->x + 0.5 * width - camera.cx / camera.fx) < 1e-6);
@@ -270,7 +270,7 @@ static void test_attributes(void **state)
     assert_string_equal(attribute(file, "adcgs/camera", EXR_ATTR_STRING)->string->str, "eye");
     assert_non_null(strstr(attribute(file, "software", EXR_ATTR_STRING)->string->str, PACKAGE_VERSION));
     exr_finish(&file);
-    /* A camera without a name is no reason to fail. */
+    /* A camera without a name is valid. */
     camera.name[0] = 0;
     assert_int_equal(write_as("n.exr", ADCGS_DEPTH_FLOAT, 0, 0), ADCGS_OK);
     strcpy(camera.name, "eye");
@@ -285,7 +285,7 @@ static float aspect_of(const char *name)
     return aspect;
 }
 
-/** Pixels twice as wide as high are such whose focal length counts half as many of them; without a camera they are square. */
+/** A focal length of half as many pixels in x means pixels twice as wide as high. Without a camera pixels are square. */
 static void test_aspect(void **state)
 {
     const double focal = camera.fx;
@@ -297,7 +297,7 @@ static void test_aspect(void **state)
     camera.fx = camera.fy;
     assert_int_equal(write_as("square.exr", ADCGS_DEPTH_HALF, 0, 0), ADCGS_OK);
     assert_true(aspect_of("square.exr") == 1.0f);
-    camera.fx = 1e9 * camera.fy; /* beyond what the format takes */
+    camera.fx = 1e9 * camera.fy; /* beyond the format's range */
     assert_int_equal(write_as("thin.exr", ADCGS_DEPTH_HALF, 0, 0), ADCGS_OK);
     assert_true(aspect_of("thin.exr") > 0.0f);
     camera.fx = focal;
@@ -307,7 +307,7 @@ static void test_aspect(void **state)
     adcgs_image_free(&image);
 }
 
-/** What the samples stand for is said: sRGB's curve, or linear light and its primaries. */
+/** The file states the meaning of its samples: sRGB's curve, or linear light and its primaries. */
 static void test_curve_named(void **state)
 {
     exr_context_t file;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Segments that are faded into the one before: frames are blended as the specification has it, and are the same whichever way a
- * stream is read; who has not got the segment before draws the next alone.
+ * Segments with a crossfade from the one before: frames are blended as the specification says, and are the same for every way of
+ * reading a stream. A decoder without the segment before renders the next one alone.
  */
 #include "config.h"
 
@@ -22,12 +22,12 @@ enum { SEGMENTS = 7, WIDTH = 31, HEIGHT = 23, PIXELS = WIDTH * HEIGHT, VALUES = 
 static const adcgs_camera camera = { .width = WIDTH, .height = HEIGHT, .fx = 25, .fy = 25, .cx = 15, .cy = 11, .near_plane = 0.1,
                                      .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -12 } };
 
-/** Ticks of the reach of each: a fade of a whole segment, none, one that would be longer, one of a tick, others. */
+/** Crossfade of each segment in ticks: a whole segment, none, longer than the segment, one tick, others. */
 static const int reach[SEGMENTS] = { 40, 0, 90, 1, 12, 20, 33 };
 
 static float drawn_alone[2][VALUES], expected[TIMES][VALUES];
 
-/** Moments in no order that matters, some at the ends of segments and fades. */
+/** Times in an arbitrary order, some at the ends of segments and crossfades. */
 static double time_of(int i)
 {
     return i < 2 * SEGMENTS ? (i % 2 ? 40 * (i / 2) : 40 * (i / 2) + reach[i / 2]) * 1e-3 : (i - 20) * 0.00237;
@@ -62,7 +62,7 @@ static uint32_t segment_of(const adcgs_stream *s, double time)
     return i;
 }
 
-/** Whether a moment lies in a fade; how far in. */
+/** True if a time lies in a crossfade; weight: how far in. */
 static int is_fade(const adcgs_stream *s, double time, float *weight)
 {
     const uint32_t i = segment_of(s, time);
@@ -112,7 +112,7 @@ static void check_frame(adcgs_decoder *d, int i)
     static float found[VALUES];
     draw(d, time_of(i), found);
     if (memcmp(found, expected[i], sizeof found))
-        fail_msg("the frame at %.17g is another", time_of(i));
+        fail_msg("the frame at %.17g differs", time_of(i));
 }
 
 static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
@@ -147,7 +147,7 @@ static void test_frames(void **state)
     }
 }
 
-/** Read on demand, forwards, backwards and in any order; two models are in memory at most. */
+/** Reads on demand, forwards, backwards and in any order. At most two models are in memory. */
 static void test_seek(void **state)
 {
     fixture *f = *state;
@@ -166,7 +166,7 @@ static void test_seek(void **state)
     adcgs_close(&d);
 }
 
-/** Pushed, and drawn when it is final, from the first byte on that it is; `forgets`: what is past is. */
+/** Pushes the stream and renders each frame as soon as it is final; forgets: discard data before the current time. */
 static void play_pushed(const fixture *f, int forgets)
 {
     int in_order[TIMES];
@@ -202,7 +202,7 @@ static void test_push(void **state)
     play_pushed(*state, 1);
 }
 
-/** The end of what stands before segment n. */
+/** Offset of segment n. */
 static size_t segment_at(const adcgs_buffer *b, int n)
 {
     for (size_t at = ADCGS_SIGNATURE_BYTES; at < b->size; at += ADCGS_CHUNK_BYTES + adcgs_load_le32(b->data + at + 4))
@@ -221,7 +221,7 @@ static void listen(void *user, adcgs_log_level level, const char *text)
         strncat(told, text, sizeof told - strlen(told) - 1);
 }
 
-/** Where a segment is lost the next, a key, is drawn alone where it would be faded in, and the log says so. */
+/** Where a segment is lost, the next one, a key, is rendered alone instead of crossfaded, and the log reports it. */
 static void test_lost(void **state)
 {
     const fixture *f = *state;
@@ -249,7 +249,7 @@ static void test_lost(void **state)
     adcgs_buffer_clear(&b);
 }
 
-/** Who joins behind a segment draws the next alone, from its start on; later ones are faded in. */
+/** After tune-in behind a segment, the next one is rendered alone from its start on. Later ones are crossfaded. */
 static void test_joined(void **state)
 {
     const fixture *f = *state;
@@ -275,7 +275,7 @@ static void test_joined(void **state)
     adcgs_buffer_clear(&b);
 }
 
-/** Other kinds of picture are blended, too: what 8 bits show is the frame; depth and coverage lie between those of both. */
+/** Other kinds of image are blended as well: 8-bit images equal the frame; depth and coverage lie between the values of both. */
 static void test_kinds(void **state)
 {
     const fixture *f = *state;
@@ -308,7 +308,7 @@ static void test_kinds(void **state)
     adcgs_close(&d);
 }
 
-/** Splats are those of the segment alone, and fewer tiers, layers and back again change both pictures of a fade. */
+/** Splats are those of the segment alone. Fewer tiers, layers and back again change both images of a crossfade. */
 static void test_splats(void **state)
 {
     const fixture *f = *state;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * State after a failure. Pushed bytes that are refused leave the splats of every time unchanged. A stream that is read on demand
- * keeps its number of segments, and can be decoded wherever its bytes are right.
+ * State after a failure. Refused pushed bytes leave the splats of every time unchanged. A stream that is read on demand keeps its
+ * number of segments, and can be decoded wherever its bytes are right.
  */
 #include "stream_fixture.h"
 
@@ -12,7 +12,7 @@
 
 enum { SEGMENTS = 4, TIMES = 6 };
 
-/** Splats at some times, and facts. */
+/** Splats and information at some times. */
 typedef struct shown {
     adcgs_status status[TIMES], info_status;
     uint8_t digest[TIMES][16];
@@ -20,7 +20,7 @@ typedef struct shown {
     double drawable;
 } shown;
 
-/** A key, two that are predicted, a key: several tiers, layers of several slices, and fades. */
+/** A key, two predicted segments, a key: several tiers, layers of several slices, and crossfades. */
 static int setup(void **state)
 {
     fixture *f = fixture_new(state);
@@ -53,12 +53,12 @@ static shown look(adcgs_decoder *d)
     return s;
 }
 
-/** After a chunk was refused that may have ended the segment before it. */
+/** The refused chunk may have ended the segment before it. */
 static void check_same(const shown *before, const shown *after, const char *name)
 {
     if (memcmp(before->digest, after->digest, sizeof before->digest) ||
         memcmp(before->status, after->status, sizeof before->status))
-        fail_msg("%s: other splats after a failure", name);
+        fail_msg("%s: splats changed by a failure", name);
     assert_in_range(after->segments, before->segments, before->segments + 1);
     if (before->info_status == ADCGS_OK && before->drawable != after->drawable)
         fail_msg("%s: time_drawable is %g after a failure, %g before", name, after->drawable, before->drawable);
@@ -84,7 +84,7 @@ static adcgs_status push(adcgs_decoder *d, const uint8_t *data, size_t bytes)
     return status;
 }
 
-/** Chunk by chunk, and a look in front of each. \return whether one was refused. */
+/** Pushes chunk by chunk, with a comparison before each. \return true if one was refused. */
 static int push_chunks(const uint8_t *data, size_t size)
 {
     adcgs_decoder *d = open_push(0);
@@ -126,7 +126,7 @@ static void test_refused_chunk(void **state)
     free(bytes);
 }
 
-/** Memory ends anywhere: a model that is not complete gives no splats. */
+/** Memory ends anywhere: an incomplete model gives no splats. */
 static void test_no_memory(void **state)
 {
     const fixture *f = *state;
@@ -175,7 +175,7 @@ static adcgs_decoder *open_at(source *s, size_t size)
     return d;
 }
 
-/** A chunk is another for a while: its bytes, or also its header. */
+/** A chunk changes for a while: its bytes, or also its header. */
 static void test_bytes_that_change(void **state)
 {
     const fixture *f = *state;
@@ -207,7 +207,7 @@ static void test_bytes_that_change(void **state)
     free(other);
 }
 
-/** INDX has other times than the segments: theirs count. */
+/** INDX has other times than the segments: the segments' times count. */
 static void test_index_of_other_times(void **state)
 {
     const fixture *f = *state;

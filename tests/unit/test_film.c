@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What is still and what moves before a camera that moves, of a generated film whose truth is known. */
+/** \file Static and moving points of a monocular sequence, generated with known truth. */
 #include "outside_files.h"
 
 #include "layouts/open.h"
@@ -10,7 +10,7 @@
 #include <math.h>
 
 #define SIDE 128
-/* The box of film-cross80: its middle at time 0, and where it is at time 1, in units of the data set. */
+/* The box of film-cross80: its centre at time 0, and the distance to its place at time 1, in units of the data set. */
 #define CROSSES (0.80 * 4.2 * 2.0 / 2.5)
 static const double begin[3] = { -0.5 * CROSSES, -0.10, 0.26 };
 
@@ -60,14 +60,14 @@ static void a_film_is_matched(void **state)
     assert_true(n <= 200 && n % 37);
     for (uint32_t i = 0; i < n; i++)
         times[i] = views[i].time;
-    for (uint32_t i = 0; i < n; i++) /* pictures from here and there are no film */
+    for (uint32_t i = 0; i < n; i++) /* images in a mixed order are no sequence */
         views[i].time = times[i * 37 % n];
     assert_false(applies());
     for (uint32_t i = 0; i < n; i++)
         views[i].time = times[i];
 }
 
-/** The table's top lies at z = 0, and is most of what is seen. */
+/** The table's top is at z = 0 and covers most of the image. */
 static void what_is_still_lies_where_it_is(void **state)
 {
     uint32_t on_table = 0, below = 0;
@@ -84,7 +84,7 @@ static void what_is_still_lies_where_it_is(void **state)
     assert_true(below < found.n_still / 20);
 }
 
-/** At most moments the points of what moves are about the box, and go as it does. */
+/** In most frames the moving points are about the box, and move as it does. */
 static void what_moves_is_where_it_is(void **state)
 {
     uint32_t good = 0, first = 0, last;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Runs that go on with the segment before: the float model made of a model is quantised to the same model again, what is settled
- * stays to the bit and is found again in the model that results, and stopping changes nothing.
+ * Runs that continue the segment before. The float model made from a model quantises to the same model. Frozen anchors stay to
+ * the bit and are found again in the resulting model. Stopping changes nothing.
  */
 #include "tiny_scene.h"
 
@@ -42,7 +42,7 @@ static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
         fail_msg("%s", error.text);
 }
 
-/** The model of a run's end. */
+/** The model at the end of a run. */
 static void take_model(adcgs_model *model, const adcgs_fmodel *f)
 {
     const adcgs_quantise_options options = { .cpu = adcgs_cpu_best() };
@@ -94,7 +94,7 @@ static uint32_t settled(const adcgs_fmodel *f)
     return n;
 }
 
-/** Of a segment that goes on behind its end the next begins at the end. */
+/** If a segment has a crossfade after its end, the next one's time table starts at that end. */
 static void time_begins_where_the_next_does(void **state)
 {
     const adcgs_train_config config = follow_config();
@@ -102,7 +102,7 @@ static void time_begins_where_the_next_does(void **state)
     adcgs_fmodel *f;
     (void)state;
     learn(&before, NULL);
-    before.time_end = before.reach = scene->duration / 2; /* the middle of its time is its end */
+    before.time_end = before.reach = scene->duration / 2; /* its end is the middle of its time */
     assert_int_equal(adcgs_fmodel_from_model(&f, &before, &config.shape, 7, adcgs_cpu_best(), &error), ADCGS_OK);
     adcgs_trainer *t = make(&config, &before, pool);
     const size_t rows = f->params.time_rows, columns = (size_t)adcgs_fmodel_time_columns(&f->params), below = (rows - 1) / 2;
@@ -118,7 +118,7 @@ static void time_begins_where_the_next_does(void **state)
     adcgs_model_clear(&before, NULL);
 }
 
-/** The model before can be followed, at least what is settled is kept of it, and stays to the bit. */
+/** Prediction from the model before is possible. At least the frozen anchors are predicted, and they stay to the bit. */
 static void what_is_settled_is_kept(void **state)
 {
     const adcgs_train_config config = follow_config();
@@ -129,7 +129,7 @@ static void what_is_settled_is_kept(void **state)
     adcgs_trainer *t = make(&config, &before, pool);
     const uint32_t first = settled(t->f);
     assert_true(first > 0 && first <= before.n);
-    t->released = UINT8_MAX; /* so short a run leaves much to wish for: all would learn again */
+    t->released = UINT8_MAX; /* a run this short leaves large errors, and would unfreeze everything */
     run(t, NULL, NULL);
     take_model(&model, t->f);
     assert_true(adcgs_kept_possible(&before, &model, &error));
@@ -142,7 +142,7 @@ static void what_is_settled_is_kept(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** Stopped in each stage and restored, and with other threads, a run ends where it does otherwise. */
+/** A run that stops in each stage and is restored, with other threads, ends like one that never stopped. */
 static void stopping_changes_nothing(void **state)
 {
     static const uint32_t stops[] = { 0, 60, 150, 190 };
@@ -169,7 +169,7 @@ static void stopping_changes_nothing(void **state)
         if (i + 1 < ADCGS_COUNTOF(stops))
             adcgs_buffer_clear(&middle);
     }
-    /* It is bound to the model that it goes on with. */
+    /* A checkpoint belongs to the model that it continues. */
     learn(&other, &before);
     adcgs_trainer *stranger = make(&config, &other, NULL);
     assert_int_equal(adcgs_trainer_restore(stranger, middle.data, middle.size, &error), ADCGS_ERR_DATA);
@@ -183,7 +183,7 @@ static void stopping_changes_nothing(void **state)
     adcgs_model_clear(&before, NULL);
 }
 
-/** What stands still and has become darker learns again, but for what no picture shows. */
+/** Frozen static anchors that became darker than the images are unfrozen, except those that no image shows. */
 static void what_has_changed_learns(void **state)
 {
     const adcgs_train_config config = follow_config();
@@ -201,7 +201,7 @@ static void what_has_changed_learns(void **state)
     assert_in_range(settled(t->f), 0, before.n * 6 / 10);
     assert_int_equal(t->released, 1);
     const uint32_t left = settled(t->f);
-    assert_int_equal(adcgs_release_step(t, 0, &error), ADCGS_OK); /* it is not asked again at once */
+    assert_int_equal(adcgs_release_step(t, 0, &error), ADCGS_OK); /* the check does not run again at once */
     assert_int_equal(settled(t->f), left);
     adcgs_trainer_free(&t);
     adcgs_model_clear(&before, NULL);
@@ -221,7 +221,7 @@ static void place(const adcgs_stereo_pose *p, const double pivot[3], const doubl
     }
 }
 
-/** Where a body that turns about an axis of its own and flies is after t. */
+/** Pose after t of a body that turns about an axis of its own and flies. */
 static adcgs_stereo_pose truth(int body, double t)
 {
     static const double turn[2][3] = { { 0.3, -0.8, 0.5 }, { -0.2, 0.1, 0.9 } };
@@ -236,8 +236,9 @@ static adcgs_stereo_pose truth(int body, double t)
 enum { FOUND = 3, SEEN = 4 };
 
 /**
- * Two bodies rest somewhere and were left at t = 1. They and a third are found, in another order, by points that rest where they
- * are at t = 1 + 2/3, with poses from there. Each is recognised, and takes what rests where it rests in the model where it goes.
+ * The model has two bodies, last posed at t = 1. Stereo finds these and a third one, in another order, by points in their places
+ * at t = 1 + 2/3 and with poses relative to that time. Each known body is recognised, and gets poses relative to its rest
+ * position in the model.
  */
 static void bodies_are_found_again(void **state)
 {
@@ -275,7 +276,7 @@ static void bodies_are_found_again(void **state)
             const adcgs_stereo_pose now = truth(b < 0 ? 0 : b, 1 + m / (SEEN - 1.0)), then = truth(b < 0 ? 0 : b, 1 + 2 / 3.0);
             const double back[4] = { then.q[0], -then.q[1], -then.q[2], -then.q[3] };
             double at[3];
-            /* x rests at T(then) x0: it goes T(now) T(then)^-1, of which the way is that of the pivot. */
+            /* x rests at T(then) x0 and moves by T(now) T(then)^-1; the translation of that pose is the pivot's. */
             const adcgs_stereo_pose inverse = { { back[0], back[1], back[2], back[3] }, { 0, 0, 0 } };
             double moved[3] = { pivot[0] - then.way[0], pivot[1] - then.way[1], pivot[2] - then.way[2] }, x0[3];
             place(&inverse, zero, moved, x0);
@@ -284,7 +285,7 @@ static void bodies_are_found_again(void **state)
             for (int a = 0; a < 3; a++)
                 p->way[a] = at[a] - pivot[a];
         }
-        if (b >= 0) { /* its point is where the middle of its anchors is at the first moment */
+        if (b >= 0) { /* its point is the centre of its anchors at the first time */
             const float *centre = f->centre[b ? 0 : 2];
             const double x[3] = { (double)centre[0], (double)centre[1], (double)centre[2] };
             const adcgs_stereo_pose left = truth(b, 1);

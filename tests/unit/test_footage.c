@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Faults of footage, on made-up pictures at a glance: each is found at its threshold and not just under it; of what moves as it
- * likes, and of next to nothing, nothing is said.
+ * Faults of footage, on thumbnail statistics of synthetic images. Each fault is found at its threshold and not just below it.
+ * Free motion, and very short or empty footage, cause no report.
  */
 #include "data/faults.h"
 #include "data/light.h"
@@ -19,7 +19,7 @@ enum { CAMERAS = 6, MOMENTS = 48, MOST = CAMERAS * MOMENTS, SEEDS = 100 };
 
 static adcgs_error error;
 
-/* What was taken; views' paths are their numbers. */
+/* The recorded footage. A view's path is its number. */
 static struct {
     uint32_t n;
     adcgs_scene_view views[MOST];
@@ -35,7 +35,7 @@ static double draw(void)
     return (double)(random_state >> 8) / 16777216.0;
 }
 
-/* A picture by a camera, in shades that are its own, somewhat brighter: 0.3 to 0.6, and plain tints. */
+/* An image by a camera, in shades of its own (0.3 to 0.6, made brighter by the last argument) and plain tints. */
 static adcgs_glance *take(int camera, double time, double brighter)
 {
     adcgs_scene_view *const view = &film.views[film.n];
@@ -89,14 +89,14 @@ static void expect_silence(const char *which)
     }
 }
 
-/* ---- Next to nothing ---- */
+/* ---- Very short footage ---- */
 
 static void of_little_nothing_is_said(void **state)
 {
     (void)state;
     begin();
     expect_silence(all);
-    for (int n = 1; n < 8; n++) { /* a camera of a few pictures, which all are one; then at one time */
+    for (int n = 1; n < 8; n++) { /* one camera with a few identical images; then several at one time */
         begin();
         for (int i = 0; i < n; i++)
             take(0, i, 0.0);
@@ -106,12 +106,12 @@ static void of_little_nothing_is_said(void **state)
             take(0, 3.0, 0.02 * i * i);
         expect_silence(all);
         begin();
-        for (int i = 0; i < n; i++) /* a picture each */
+        for (int i = 0; i < n; i++) /* one image per camera */
             take(i % CAMERAS, i, 0.0);
         expect_silence(all);
     }
     begin();
-    for (int i = 0; i < MOST; i++) { /* all see the same, which rests */
+    for (int i = 0; i < MOST; i++) { /* all cameras see the same static scene */
         take(0, i / CAMERAS, 0.0);
         film.views[i].camera.fx = 50.0 + i % CAMERAS;
     }
@@ -132,14 +132,14 @@ static void what_is_not_known_says_nothing(void **state)
                 glance->tints[0][k] = glance->tints[1][k] = NAN;
     }
     expect_silence(all);
-    for (int i = 0; i < MOST; i++) /* nothing of any */
+    for (int i = 0; i < MOST; i++) /* no valid number at all */
         memset(&film.glances[i], 0xff, sizeof film.glances[i]);
     expect_silence(all);
 }
 
 /* ---- Gaps ---- */
 
-/* One camera, a step of 1 but for one. */
+/* One camera with steps of 1, except one step. */
 static void film_with_gap(double gap)
 {
     begin();
@@ -157,7 +157,7 @@ static void gaps_are_found(void **state)
     assert_true(fault.cameras == 1 && fault.of == 1 && fault.count == 1 && fault.size == 2.0);
     assert_true(fault.from == 7.0 && fabs(fault.to - 9.501) < 1e-9);
     assert_string_equal(fault.path, "7");
-    for (int near = 11; near <= 12; near++) { /* of 20 steps, so many are alike: 0.6 are regular */
+    for (int near = 11; near <= 12; near++) { /* of 20 steps, this many are equal: a share of 0.6 is regular */
         double time = 0.0;
         begin();
         for (int i = 0; i <= 20; i++, time += i <= near ? 1.0 : 4.0)
@@ -166,7 +166,7 @@ static void gaps_are_found(void **state)
         assert_int_equal(fault.cameras, near == 12);
         assert_true(near != 12 || fault.count == 8);
     }
-    begin(); /* six pictures, and five of one camera that stays */
+    begin(); /* six images; then five of one static camera */
     for (int i = 0; i < 6; i++)
         take(0, i < 3 ? i : i + 4, 0.0);
     assert_true(find('g').cameras == 1 && find('g').size == 4.0);
@@ -177,11 +177,11 @@ static void gaps_are_found(void **state)
 static void gaps_of_all_are_the_scenes(void **state)
 {
     (void)state;
-    begin(); /* cameras in turn: each takes every third, and nobody from 20 to 24 */
+    begin(); /* cameras in turn: each takes every third frame, and none takes 21 to 23 */
     for (int i = 0; i < MOMENTS; i++)
         if (i <= 20 || i >= 24)
             take(i % 3, i, 0.0);
-    expect_silence("g"); /* it is not longer than the steps of a camera, by half */
+    expect_silence("g"); /* the gap is at most 1.5 times a camera's step */
     begin();
     for (int i = 0; i < MOMENTS; i++)
         if (i <= 20 || i >= 26)
@@ -191,7 +191,7 @@ static void gaps_of_all_are_the_scenes(void **state)
     assert_true(fault.from == 20.0 && fault.to == 26.0);
 }
 
-/* Of a camera that moves, what was put aside for tests is not missing. */
+/* For one moving camera, frames set aside for tests do not count as missing. */
 static void what_was_put_aside_is_no_gap(void **state)
 {
     static adcgs_scene_view aside[4];
@@ -206,16 +206,16 @@ static void what_was_put_aside_is_no_gap(void **state)
     scene.n_views[ADCGS_SPLIT_TRAIN] = film.n;
     for (int i = 0; i < 4; i++)
         aside[i].time = 8.0 + i;
-    for (uint32_t n = 0; n <= 4; n++) { /* two of four were there: that is half */
+    for (uint32_t n = 0; n <= 4; n++) { /* of four frames two are there: half */
         scene.n_views[ADCGS_SPLIT_TEST] = n;
         assert_int_equal(adcgs_fault_gaps(&fault, &scene, &error), ADCGS_OK);
         assert_int_equal(fault.cameras, n < 2);
     }
 }
 
-/* ---- Pictures twice ---- */
+/* ---- Duplicate images ---- */
 
-/* One camera, what it shows goes on by 0.01 a picture; `by` of that at those that come once more, `copies` times each. */
+/* One camera; each image changes by 0.01, but duplicates by `by` times that: `copies` in a row at `pictures` places. */
 static void film_twice(int pictures, double by, int copies)
 {
     double shown = 0.0, step = 0.01;
@@ -235,16 +235,16 @@ static void doubled_pictures_are_found(void **state)
     film_twice(2, 0.095, 1);
     adcgs_fault fault = find('d');
     assert_true(fault.cameras == 1 && fault.of == 1 && fault.count == 2 && fault.size == 2.0 && fault.from == 4.0);
-    film_twice(1, 0.0, 1); /* one may be where something was hidden */
+    film_twice(1, 0.0, 1); /* a single one may be due to an occlusion */
     expect_silence("d");
     film_twice(3, 0.0, 2);
     fault = find('d');
     assert_true(fault.count == 6);
-    film_twice(3, 0.0, 3); /* that long it rests */
+    film_twice(3, 0.0, 3); /* a run this long means that the scene is at rest */
     expect_silence("d");
 }
 
-/* They are told of, and learnt as of the time that they show; all others as of their own. */
+/* Duplicates are reported, and trained with the timestamp that they show. All other images keep their own. */
 static void doubled_pictures_are_of_the_time_before(void **state)
 {
     (void)state;
@@ -266,7 +266,7 @@ static void doubled_pictures_are_of_the_time_before(void **state)
     assert_true(trainer.doubled.count == 6 && views[4].t < 0.0f);
 }
 
-/* What goes to and fro may rest where it turns. */
+/* A movement to and fro may rest where it turns. */
 static void what_turns_may_rest(void **state)
 {
     (void)state;
@@ -278,7 +278,7 @@ static void what_turns_may_rest(void **state)
     }
 }
 
-/* One camera that moves took all: its picture comes once more, from elsewhere as it is said. */
+/* One moving camera took all images. A duplicate comes with another pose. */
 static void doubled_pictures_of_one_that_moves(void **state)
 {
     (void)state;
@@ -290,7 +290,7 @@ static void doubled_pictures_of_one_that_moves(void **state)
     for (uint32_t i = 0; i < film.n; i++)
         film.views[i].camera.fx = 50.0 + 0.1 * i;
     expect_silence(all);
-    begin(); /* a camera anywhere each time, as D-NeRF has it, and no copy but two */
+    begin(); /* a random camera pose for each image, as in D-NeRF, and only two copies */
     for (int i = 0; i < 40; i++) {
         take(i == 11 || i == 22 ? i - 1 : i, i, 0.0);
         film.views[i].camera.fx = 50.0 + 0.1 * i;
@@ -298,9 +298,9 @@ static void doubled_pictures_of_one_that_moves(void **state)
     assert_int_equal(find('d').count, 2);
 }
 
-/* ---- Pictures of another camera ---- */
+/* ---- Images of another camera ---- */
 
-/* Cameras in turn; picture `at` is the one before once more, off by so much. */
+/* Cameras in turn. Image `at` is a copy of the one before, changed by `off`. */
 static void film_in_turn(int at, double off, int cameras)
 {
     begin();
@@ -316,7 +316,7 @@ static void pictures_of_others_are_found(void **state)
     (void)state;
     film_in_turn(-1, 0.0, 4);
     expect_silence(all);
-    const double usual = adcgs_glance_difference(&film.glances[21], &film.glances[17]), /* of the copy and its camera's others */
+    const double usual = adcgs_glance_difference(&film.glances[21], &film.glances[17]), /* copy against its camera's others */
         other = fmin(adcgs_glance_difference(&film.glances[20], &film.glances[17]),
                      adcgs_glance_difference(&film.glances[20], &film.glances[25]));
     assert_true(usual < 0.1 * other);
@@ -328,13 +328,13 @@ static void pictures_of_others_are_found(void **state)
     assert_int_equal(find('x').cameras, 1);
     film_in_turn(21, 0.12 * other, 4);
     expect_silence("x");
-    for (int at = 4; at < MOMENTS; at++) { /* wherever it is but in the first turn, which has none before */
+    for (int at = 4; at < MOMENTS; at++) { /* anywhere except in the first turn, which has no turn before it */
         film_in_turn(at, 0.0, 4);
         assert_true(find('x').size == 1.0 && find('x').to == at);
     }
 }
 
-/* Two cameras in one place, before which much changes; a slate, or a cap, that is before all of them. */
+/* Two cameras at one place before a strongly changing scene; then a slate, or a lens cap, before all cameras. */
 static void what_all_see_is_no_copy(void **state)
 {
     (void)state;
@@ -356,8 +356,8 @@ static void what_all_see_is_no_copy(void **state)
 /* ---- Light ---- */
 
 /*
- * Cameras that each see all moments. From moment `at` on, of `until`, pictures are by exp(size) brighter or of another tint, in
- * all cells or but for `off` of these in a hundred, which are twice so far off; cameras: how many of three.
+ * Cameras that each see all frames. From frame `at` until `until` the images are brighter by exp(size), or have another tint, in
+ * all cells. In `off` per cent of the cells the change is twice as large. cameras: how many of three change.
  */
 static void film_light(adcgs_glance_light light, double size, int at, int until, int off, int cameras)
 {
@@ -389,14 +389,14 @@ static void steps_of_light_are_found(void **state)
             }
             film_light((adcgs_glance_light)light, sign * 0.2, 8, 9, 0, 3); /* a flash */
             assert_int_equal(find('l').cameras, 3);
-            film_light((adcgs_glance_light)light, sign * 0.2, 8, 99, 49, 3); /* in half of the cells it is more */
+            film_light((adcgs_glance_light)light, sign * 0.2, 8, 99, 49, 3); /* in nearly half of the cells the step is larger */
             assert_int_equal(find('l').cameras, 3);
-            film_light((adcgs_glance_light)light, sign * 0.2, 1, 99, 0, 3); /* at the ends it may be anything */
+            film_light((adcgs_glance_light)light, sign * 0.2, 1, 99, 0, 3); /* steps at the ends are not reported */
             expect_silence("l");
         }
 }
 
-/* More than half of the cells go to either side of it, by a third: something else is seen. */
+/* The step of more than half of the cells deviates by a third to either side: the content has changed, not the light. */
 static void what_moves_is_no_light(void **state)
 {
     (void)state;
@@ -409,7 +409,7 @@ static void what_moves_is_no_light(void **state)
     }
 }
 
-/* The light that changes all the time, by a third of the step and more, has no steps. */
+/* Light that changes all the time, by a third of the step or more, has no steps. */
 static void light_that_changes_all_the_time(void **state)
 {
     (void)state;
@@ -422,7 +422,7 @@ static void light_that_changes_all_the_time(void **state)
     }
 }
 
-/* What becomes redder and a little brighter has become redder. */
+/* An image that becomes redder and a little brighter is reported as redder. */
 static void the_greatest_step_is_told(void **state)
 {
     (void)state;
@@ -433,7 +433,7 @@ static void the_greatest_step_is_told(void **state)
     assert_true(find('l').light == ADCGS_LIGHT_REDDER && find('l').cameras == 3);
 }
 
-/* ---- Light evened out ---- */
+/* ---- Correction of light ---- */
 
 static void even(void)
 {
@@ -441,14 +441,14 @@ static void even(void)
     adcgs_fault fault;
     adcgs_tracks tracks;
     assert_int_equal(adcgs_tracks_find(&tracks, film.views, film.n, &error), ADCGS_OK);
-    for (uint32_t i = 0; i < film.n; i++) /* whatever was there before */
+    for (uint32_t i = 0; i < film.n; i++) /* values from before, to be overwritten */
         film.views[i].stops[i % 3] = 7.0f;
     assert_int_equal(adcgs_fault_light(&fault, behind, film.views, &tracks, film.glances, &error), ADCGS_OK);
     adcgs_light_add_up(film.views, behind, &tracks, film.glances);
     adcgs_tracks_clear(&tracks);
 }
 
-/* What film_light() made, of which `cameras` have it from `at` on; gains: logarithms by which their channels are taken back. */
+/* Expects the correction of film_light(): in `cameras` cameras from `at` on; gains: the logarithms per channel. */
 static void expect_even(int at, const double gains[3], int cameras)
 {
     even();
@@ -459,7 +459,9 @@ static void expect_even(int at, const double gains[3], int cameras)
         }
 }
 
-/* What is brighter is so in all channels; what is redder and as bright is redder, and all else is darker for it. */
+/*
+ * A brighter image is brighter in all channels. An image that is redder at the same brightness is darker in the other channels.
+ */
 static void steps_of_light_are_evened(void **state)
 {
     (void)state;
@@ -469,13 +471,13 @@ static void steps_of_light_are_evened(void **state)
             film_light(ADCGS_LIGHT_BRIGHTER, size, 8, 99, 0, cameras);
             expect_even(8, all_alike, cameras);
         }
-        film_light(ADCGS_LIGHT_BRIGHTER, size, 8, 9, 0, 3); /* a flash is back to what was before */
+        film_light(ADCGS_LIGHT_BRIGHTER, size, 8, 9, 0, 3); /* after a flash the light is as before */
         even();
         for (int i = 0; i < 3 * 16; i++)
             assert_true(fabs((double)film.views[i].stops[1] * log(2.0) - (i / 3 == 8 ? size : 0.0)) < 1e-4);
         for (int light = ADCGS_LIGHT_REDDER; light <= ADCGS_LIGHT_BLUER; light++) {
             film_light((adcgs_glance_light)light, size, 8, 99, 0, 3);
-            for (uint32_t i = 0; i < film.n; i++) /* of one tint, so that it can be said */
+            for (uint32_t i = 0; i < film.n; i++) /* of one tint, so that the gains are known */
                 for (int k = 0; k < ADCGS_GLANCE_TINTS; k++)
                     film.glances[i].tints[0][k] = film.glances[i].tints[1][k] = 0.0f;
             for (uint32_t i = 24; i < film.n; i++)
@@ -489,7 +491,7 @@ static void steps_of_light_are_evened(void **state)
     }
 }
 
-/* A second step is from the first on; where too little is lit to say, and of a camera of few pictures, nothing is done. */
+/* A second step adds to the first. Where too few cells have a value, and for a camera of few images, there is no correction. */
 static void what_is_evened_adds_up(void **state)
 {
     (void)state;
@@ -509,7 +511,9 @@ static void what_is_evened_adds_up(void **state)
 
 /* ---- Clocks ---- */
 
-/* What jerks at moments that are the same for all cameras but some, which are late; jerks: how many of them stand out. */
+/*
+ * Content that jerks at the same times for all cameras. The first `of` cameras are `late` frames late; jerks: how many stand out.
+ */
 static void film_clocks(int cameras, int moments, int late, int of, int jerks)
 {
     double jerk[MOMENTS + 32], shown[CAMERAS] = {0.0};
@@ -540,26 +544,26 @@ static void clocks_that_are_off_are_found(void **state)
     }
     film_clocks(3, 40, 2, 1, 30);
     assert_int_equal(find('c').cameras, 1);
-    film_clocks(2, 40, 2, 1, 30); /* of two nobody knows which */
+    film_clocks(2, 40, 2, 1, 30); /* with two cameras, either may be late */
     expect_silence("c");
-    film_clocks(4, 40, 2, 2, 30); /* nor of two and two */
+    film_clocks(4, 40, 2, 2, 30); /* the same with two against two */
     expect_silence("c");
 }
 
 static void too_little_tells_no_clock(void **state)
 {
     (void)state;
-    film_clocks(4, 12, 0, 0, 30); /* eleven changes */
+    film_clocks(4, 12, 0, 0, 30); /* eleven changes are too few */
     assert_int_equal(find('c').of, 0);
     film_clocks(4, 13, 0, 0, 30);
     assert_int_equal(find('c').of, 4);
-    film_clocks(4, 40, 2, 1, 2); /* what happens twice may only be seen later */
+    film_clocks(4, 40, 2, 1, 2); /* two events are too few: one camera may only see them later */
     expect_silence("c");
     film_clocks(4, 40, 2, 1, 6);
     assert_int_equal(find('c').cameras, 1);
 }
 
-/* What repeats is in step in many ways. */
+/* Periodic motion fits several time offsets. */
 static void what_repeats_tells_no_clock(void **state)
 {
     (void)state;
@@ -570,9 +574,11 @@ static void what_repeats_tells_no_clock(void **state)
     expect_silence("c");
 }
 
-/* ---- What moves as it likes ---- */
+/* ---- Free motion ---- */
 
-/* Blobs on ways that are smooth, by cameras that see it from elsewhere, with a sensor's noise: `turns` of them see a moment. */
+/*
+ * Blobs on smooth paths, seen by cameras from different places with sensor noise. Every frame is seen by one in `turns` cameras.
+ */
 static void film_anything(uint32_t seed, int cameras, int turns, int moves)
 {
     double way[4][8];
@@ -607,16 +613,16 @@ static void what_moves_as_it_likes_has_no_fault(void **state)
 {
     (void)state;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
-        film_anything(seed, 4, 1 + (int)(seed % 2) * 3, 0); /* all see all, or in turn */
+        film_anything(seed, 4, 1 + (int)(seed % 2) * 3, 0); /* all cameras see each frame, or they take turns */
         expect_silence(all);
-        film_anything(seed, 1, 1, (int)(seed % 2)); /* one that stays, or moves */
+        film_anything(seed, 1, 1, (int)(seed % 2)); /* one camera, static or moving */
         expect_silence(all);
     }
 }
 
 /**
- * What is masked, which is no number in pictures, takes no part: a sign that shines over most of a picture is no step of light,
- * hides none, and does not tell pictures apart that are the same but for it.
+ * Masked pixels, which are NaN in images, have no effect. A bright sign that covers most of the image is no step of light and
+ * hides none, and two images that differ in the sign alone are duplicates.
  */
 static void what_is_masked_does_not_count(void **state)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What PNG and JPEG can hold, read by our readers: known values, and what OpenImageIO makes of the same files. */
+/** \file The variants of PNG and JPEG through our readers: known values, and the results of OpenImageIO for the same files. */
 #include "outside_files.h"
 
 #include "io/image.h"
@@ -28,7 +28,7 @@ static void read_good(const char *name, int channels)
     assert_int_equal(image.channels, channels);
 }
 
-/** OpenImageIO's reader is somebody else's; where it is there, both agree. Its 16 bits may be another rounding. */
+/** OpenImageIO's reader is independent of ours. Where it is available, both agree; its 16 bits may round differently. */
 static void expect_as_by_oiio(const char *name)
 {
     const adcgs_oiio *oiio;
@@ -45,7 +45,7 @@ static void expect_as_by_oiio(const char *name)
     assert_true(other.width == image.width && other.height == image.height && other.channels == image.channels);
     for (int i = 0; i < image.width * image.height * image.channels; i++)
         if (fabs((double)other.data[i] - (double)image.data[i]) > 1.01 / 255 / 256)
-            fail_msg("%s: value %d is %g, and %g by OpenImageIO", name, i, (double)image.data[i], (double)other.data[i]);
+            fail_msg("%s: value %d is %g, OpenImageIO gives %g", name, i, (double)image.data[i], (double)other.data[i]);
     adcgs_image_free(&other);
 }
 
@@ -57,7 +57,7 @@ static void done(const char *name)
 
 /* ---- PNG ---- */
 
-/** What a file is made of; samples are those of the format, in the host's order. */
+/** The contents of a file; samples are those of the format, in the host's order. */
 typedef struct recipe {
     int bits, type;
     const struct spng_plte *palette;
@@ -181,7 +181,7 @@ static double curve(double v)
     return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
 }
 
-/** gAMA of 1 means light; sRGB overrules it; other exponents are taken for sRGB's curve. */
+/** gAMA of 1 means linear light; sRGB overrules it; other exponents are taken for sRGB's curve. */
 static void test_gamma(void **state)
 {
     static const struct {
@@ -220,7 +220,7 @@ static void test_interlaced(void **state)
     done("i.png");
 }
 
-/** A PNG under another format's name is still one, as is a JPEG. */
+/** A PNG file named like another format is read as PNG, and likewise a JPEG file. */
 static void test_names(void **state)
 {
     uint8_t samples[PIXELS] = {0};
@@ -238,7 +238,7 @@ static long peak_kib(void)
     return usage.ru_maxrss;
 }
 
-/** A large image that is reduced as it is read takes memory for some rows: 36 million pixels are 144 MB as binary32. */
+/** Reducing a large image while reading takes memory for a few rows only: 36 million pixels are 144 MB as binary32. */
 static void test_large(void **state)
 {
     struct spng_ihdr head = {.width = SIDE, .height = SIDE, .bit_depth = 8, .color_type = SPNG_COLOR_TYPE_GRAYSCALE};
@@ -293,7 +293,7 @@ static void put_jpeg(const char *name, int format, const uint8_t *samples, const
     tjDestroy(encoder);
 }
 
-/** RGB with halved chroma, grey, and ink: as libjpeg decodes them for OpenImageIO, to the bit. */
+/** RGB with halved chroma, grey, and CMYK: as libjpeg decodes them for OpenImageIO, to the bit. */
 static void test_jpeg(void **state)
 {
     static const int kinds[][3] = {{TJPF_RGB, 3, 3}, {TJPF_GRAY, 1, 1}, {TJPF_CMYK, 4, 3}};
@@ -304,7 +304,7 @@ static void test_jpeg(void **state)
             samples[i] = (uint8_t)(255 - (i / n % WIDTH * 9 + i / n / WIDTH * 7 + i % n * 20) % 256);
         put_jpeg("a.jpg", kinds[k][0], samples, "", 0);
         read_good("a.jpg", kinds[k][2]);
-        if (n < 4) /* smooth pictures stay near */
+        if (n < 4) /* smooth images stay near */
             for (int i = 0; i < n * PIXELS; i++)
                 assert_true(fabs((double)image.data[i] - samples[i] / 255.0) < 0.2);
         else /* ink times black */
@@ -314,7 +314,7 @@ static void test_jpeg(void **state)
     }
 }
 
-/** Bytes that belong to nothing are passed over; coded data that end early, or are damaged, are not made up for. */
+/** Extra bytes are skipped. Coded data that end early or are damaged are an error. */
 static void test_damaged_jpeg(void **state)
 {
     uint8_t samples[3 * PIXELS], bytes[65536];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Frames per second as ratios: from numbers, from text, divided. And in a stream: its times are exact at any rate. */
+/** \file Frames per second as ratios: from numbers, from text, divided. Times in a stream are exact at any rate. */
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
@@ -24,7 +24,7 @@ static void numbers_are_ratios(void **state)
                 {123457.0 / 8191.0, 123457, 8191}, {0, 0, 0}, {-1, 0, 0}, {(double)NAN, 0, 0}, {(double)INFINITY, 0, 0}};
     for (size_t i = 0; i < ADCGS_COUNTOF(rows); i++)
         expect_rate(adcgs_fps_of(rows[i].value), rows[i].num, rows[i].den);
-    const adcgs_fps pi = adcgs_fps_of(3.14159265358979); /* no ratio of small terms, but near, and with room in an int */
+    const adcgs_fps pi = adcgs_fps_of(3.14159265358979); /* no ratio of small terms, but close, and its terms fit an int */
     assert_true(fabs(adcgs_fps_value(pi) - 3.14159265358979) < 1e-11 && pi.num < INT32_MAX);
 }
 
@@ -45,7 +45,7 @@ static void texts_are_ratios(void **state)
     }
     for (size_t i = 0; i < ADCGS_COUNTOF(bad); i++)
         if (!adcgs_fps_parse(bad[i], &rate))
-            fail_msg("'%s' is taken as %u/%u", bad[i], rate.num, rate.den);
+            fail_msg("'%s' was accepted as %u/%u", bad[i], rate.num, rate.den);
 }
 
 static void rates_are_divided(void **state)
@@ -53,7 +53,7 @@ static void rates_are_divided(void **state)
     expect_rate(adcgs_fps_divide((adcgs_fps){30000, 1001}, 2), 15000, 1001);
     expect_rate(adcgs_fps_divide((adcgs_fps){25, 1}, 10), 5, 2);
     expect_rate(adcgs_fps_divide((adcgs_fps){0, 0}, 2), 0, 0);
-    expect_rate(adcgs_fps_divide((adcgs_fps){3000, 4294967295u}, 2), 100, 286331153); /* in lowest terms there is room */
+    expect_rate(adcgs_fps_divide((adcgs_fps){3000, 4294967295u}, 2), 100, 286331153); /* in lowest terms the numbers fit */
     assert_true(fabs(adcgs_fps_value(adcgs_fps_divide((adcgs_fps){4294967291u, 4294967279u}, 7)) * 7 - 1) < 1e-8);
 }
 
@@ -62,7 +62,7 @@ static void streams_keep_rates_and_times(void **state)
 {
     static const struct {
         adcgs_fps rate;
-        double frames; /**< that the scene lasts */
+        double frames; /**< duration of the scene */
         int64_t ticks;
         uint32_t parts;
     } rows[] = {{{30, 1}, 85, 85, 1}, {{30000, 1001}, 299, 299, 1}, {{25, 2}, 7, 7, 1}, {{1, 3}, 2, 2, 1},

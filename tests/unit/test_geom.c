@@ -23,7 +23,7 @@ static uint32_t *make_voxels(size_t n)
     return voxels;
 }
 
-/* Sorts, drops duplicates, and returns how many are left. */
+/* Sorts, drops duplicates, and returns the remaining number. */
 static uint32_t tidy(uint32_t *voxels, uint32_t n)
 {
     assert_true(adcgs_morton_sort(voxels, n, NULL, NULL) >= 0);
@@ -52,7 +52,7 @@ static double check_cloud(const uint32_t *voxels, uint32_t n, int depth)
     return bits;
 }
 
-/* The numbers compiled in are those of the specification. */
+/* The numbers in the code are those of the specification. */
 /* REQ-TABL-002 */
 static void test_logistic_equals_csv(void **state)
 {
@@ -125,7 +125,7 @@ static void test_full_cubes(void **state)
             for (int axis = 0; axis < 3; axis++)
                 voxels[3 * i + (uint32_t)axis] = i >> axis * depth & (side - 1);
         assert_int_equal(tidy(voxels, n), n);
-        assert_true(check_cloud(voxels, n, depth) == 0); /* nothing is left to say */
+        assert_true(check_cloud(voxels, n, depth) == 0); /* nothing is left to code */
         /* all but one, all but every seventh */
         memmove(voxels + 3 * (n / 2), voxels + 3 * (n / 2 + 1), (n - n / 2 - 1) * 12);
         check_cloud(voxels, n - 1, depth);
@@ -227,7 +227,7 @@ static void test_wrong_use(void **state)
     assert_int_equal(adcgs_geom_decode(NULL, 0, 8, 1, out, NULL), ADCGS_OK);
 }
 
-/* Whatever the bytes are: an answer, and if it is "fine" then distinct voxels in order inside the cube. */
+/* For any bytes the decoder returns a status. If it is OK, the voxels are distinct, in order and inside the cube. */
 static void try_bytes(const uint8_t *data, size_t bytes, uint32_t n, int depth)
 {
     uint32_t *voxels = make_voxels(n);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Splats in GLB: what comes back of what is written; files made here of other kinds of numbers; what is refused; another
- * program's files.
+ * Splats in GLB: written and read back; files made here with other kinds of numbers; errors; another program's files.
  */
 #include "outside_files.h"
 #include "random_splats.h"
@@ -13,7 +12,7 @@
 
 #define NAME "KHR_gaussian_splatting"
 
-/** What is read is what was written, but for the rounding of binary32. */
+/** Expects the read splats to equal the written ones, except for the rounding of binary32. */
 static void same_splats(const adcgs_splats *a, const adcgs_splats *b, double relative)
 {
     assert_int_equal(a->n, b->n);
@@ -54,7 +53,7 @@ static void test_round_trip(void **state)
 
 /* ---- Files made here ---- */
 
-/** A file of a text and numbers; its bytes. */
+/** Builds a file from a text and numbers. Returns its number of bytes. */
 static size_t make(uint8_t *to, const char *text, const uint8_t *numbers, size_t n)
 {
     const size_t length = (strlen(text) + 3) / 4 * 4;
@@ -72,8 +71,10 @@ static size_t make(uint8_t *to, const char *text, const uint8_t *numbers, size_t
     return 28 + length + n;
 }
 
-/* Two splats: positions of floats in records of 16 bytes, rotations of int16, scales of uint8, opacities of uint16, colours of
- * floats; then, all of zeros but the last, coefficients of degree 1. */
+/*
+ * Two splats: positions of floats in records of 16 bytes, rotations of int16, scales of uint8, opacities of uint16, colours of
+ * floats; then coefficients of degree 1, all zero except the last.
+ */
 #define VIEW(at, bytes) "{\"buffer\":0,\"byteOffset\":" #at ",\"byteLength\":" #bytes "}"
 #define ACCESSOR(view, kind, type) "{\"bufferView\":" #view ",\"componentType\":" #kind ",\"count\":2,\"type\":\"" type "\"}"
 #define NORMAL(view, kind, type) \
@@ -169,7 +170,7 @@ static double colour(const adcgs_splats *s, uint32_t i, int channel, const doubl
     return sum;
 }
 
-/** A matrix moves means and ellipsoids as it moves points, and colours go along with its rotation. */
+/** A matrix moves means and ellipsoids as it moves points, and rotates view-dependent colours. */
 static void check_moved(const double m[12], const double rotation[9])
 {
     adcgs_splats before, after;
@@ -223,7 +224,7 @@ static void test_moves(void **state)
     check_moved(m, NULL);
 }
 
-/** Parents come before children: a file's nodes are a matrix and a rotation with a size. */
+/** Parents are applied after children: the file's nodes are a matrix, and a rotation with a size. */
 static void test_nodes(void **state)
 {
     uint8_t numbers[134], file[4096];
@@ -236,7 +237,7 @@ static void test_nodes(void **state)
              (int)(parent - good), good, (int)(child - parent - 16), parent + 16, strstr(child, "}"));
     const size_t bytes = make(file, text, numbers, sizeof numbers);
     expect_good(adcgs_splats_parse(&s, file, bytes, "n.glb", &error));
-    /* (1, 2, 3) turned a quarter about z is (-2, 1, 3); one on, twice as large, and on. */
+    /* (1, 2, 3) turned by a quarter about z is (-2, 1, 3); then moved by one, scaled by two, and moved. */
     near(s.mean[0][0], 8.0f, 1e-6, 0.0);
     near(s.mean[1][0], 22.0f, 1e-6, 0.0);
     near(s.mean[2][0], 36.0f, 1e-6, 0.0);
@@ -245,7 +246,7 @@ static void test_nodes(void **state)
     adcgs_splats_free(&s);
 }
 
-/* ---- SPZ within ---- */
+/* ---- Embedded SPZ ---- */
 
 #define SPZ NAME "_compression_spz"
 static const char packed[] =
@@ -256,7 +257,7 @@ static const char packed[] =
     "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":0,\"extensions\":{\"" NAME
     "\":{\"extensions\":{\"%s\":{\"bufferView\":%d}}}}}]}]}";
 
-/** A GLB file that has an SPZ file in it, behind eight bytes; expects the parser to say so of it. */
+/** Reads a GLB file that contains an SPZ file behind eight bytes; expects this status and message. */
 static void read_packed(adcgs_splats *s, const uint8_t *spz, size_t bytes, uint32_t n, const char *name, int view,
                         adcgs_status status, const char *what)
 {
@@ -304,7 +305,7 @@ static void test_packed(void **state)
     free(spz);
 }
 
-/** The good text with the first place of one of its parts replaced. */
+/** The good text with the first occurrence of a part replaced. */
 static size_t change(uint8_t file[4096], const char *part, const char *instead)
 {
     uint8_t numbers[134];
@@ -316,7 +317,7 @@ static size_t change(uint8_t file[4096], const char *part, const char *instead)
     return make(file, text, numbers, sizeof numbers);
 }
 
-/** Splats are wherever a node of the scene has them, and of all primitives. */
+/** Splats are read from every node of the scene and from all primitives. */
 static void test_many_nodes(void **state)
 {
 #define BESIDE "\"nodes\":[{\"mesh\":1,\"translation\":[3,0,0]},{\"mesh\":1},{\"mesh\":1,\"translation\":[0,9,0]}]"
@@ -365,7 +366,7 @@ static void test_too_many_nodes(void **state)
     free(file);
 }
 
-/* ---- What is refused ---- */
+/* ---- Errors ---- */
 
 static void expect_bad(const char *text, const uint8_t *numbers, size_t n, adcgs_status status, const char *what)
 {
@@ -458,7 +459,7 @@ static void test_bad_numbers(void **state)
         adcgs_store_le32(numbers + cases[i].at, cases[i].value);
         expect_bad(good, numbers, sizeof numbers, ADCGS_ERR_DATA, cases[i].what);
     }
-    /* Floats for what was integers, which can be out of range. */
+    /* Floats instead of integers, which can be out of range. */
     static const float values[3][3] = {{1, -0.5f, 1}, {1e35f, 1, 1}, {1, 1, 1}};
     for (int k = 0; k < 3; k++) {
         adcgs_splats s = random_splats(1, 1.0, 0.0, 4);
@@ -472,7 +473,7 @@ static void test_bad_numbers(void **state)
     }
 }
 
-/** Headers and chunks; every cut; one byte at a time with another value: any outcome but a crash, a line for what is refused. */
+/** Headers and chunks; every cut; one byte at a time replaced. Any outcome is valid but a crash, and an error is one line. */
 static void test_damage(void **state)
 {
     static const struct {
@@ -513,9 +514,9 @@ static void test_damage(void **state)
         }
 }
 
-/* ---- Files of others ---- */
+/* ---- Files of other programs ---- */
 
-/** What PlayCanvas' program makes of our PLY, with and without harmonics. */
+/** GLB files that PlayCanvas' program makes from our PLY, with and without harmonics. */
 static void test_splat_transform(void **state)
 {
     need_splat_transform();
@@ -523,7 +524,7 @@ static void test_splat_transform(void **state)
     expect_good(write_splats(&s, in("a.ply")));
     splat_transform("a.ply", "", "c.glb");
     expect_good(adcgs_splats_read(&theirs, in("c.glb"), &error));
-    /* PLY has no direction that is up: they take what it has by y down, x right, and turn it about z. */
+    /* PLY defines no up direction. The program assumes y down and x right, and turns the splats about z. */
     for (uint32_t i = 0; i < s.n; i++) {
         assert_true(theirs.mean[0][i] == -s.mean[0][i] && theirs.mean[1][i] == -s.mean[1][i]);
         assert_true(theirs.mean[2][i] == s.mean[2][i]);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Streams that grow: they hold what those do that are written as a whole, and are read as such; a failure changes nothing.
- * Whoever joins one, anywhere, has all from the next key on.
+ * Growing streams hold the same data as streams written at once, and are read alike. A failure changes nothing. After tune-in at
+ * any byte, a decoder has everything from the next key on.
  */
 #include "random_model.h"
 
@@ -17,16 +17,16 @@
 
 #include <cmocka.h>
 
-enum { SEGMENTS = 7, TURN = 3 }; /* every third one is a key */
+enum { SEGMENTS = 7, TURN = 3 }; /* every third segment is a key */
 
 typedef struct fixture {
     adcgs_stream stream;
     adcgs_buffer whole, grown;
-    size_t at[SEGMENTS + 1]; /* where in grown each segment's bytes begin, and where those of the last end */
+    size_t at[SEGMENTS + 1]; /* offsets of the segments in grown, and the end of the last */
     adcgs_buffer head; /* of grown, settled */
 } fixture;
 
-/** What is true of all segments, without them. */
+/** The data shared by all segments, without the segments. */
 static adcgs_stream front_of(const adcgs_stream *s, uint8_t level)
 {
     adcgs_stream front = *s;
@@ -89,7 +89,7 @@ static int teardown(void **state)
     return 0;
 }
 
-/** The segments of a decoder are those of the stream from one on. */
+/** Expects the decoder's segments to be those of the stream from `first` on. */
 static void check_models(const fixture *f, adcgs_decoder *d, uint32_t first)
 {
     uint8_t expected[16], found[16];
@@ -102,7 +102,7 @@ static void check_models(const fixture *f, adcgs_decoder *d, uint32_t first)
     assert_int_equal(adcgs_get_model_digest(d, SEGMENTS, found, NULL), ADCGS_ERR_USAGE);
 }
 
-/** The next chunk that is no HEAD, at *at or behind it. */
+/** The next chunk at or behind *at that is no HEAD. */
 static adcgs_chunk next_other(const adcgs_buffer *b, size_t *at)
 {
     adcgs_chunk chunk;
@@ -114,7 +114,7 @@ static adcgs_chunk next_other(const adcgs_buffer *b, size_t *at)
     return chunk;
 }
 
-/** But for HEAD, INDX and ENDC a stream that grew has the same chunks as one that was written at once. */
+/** Except for HEAD, INDX and ENDC, a grown stream has the same chunks as one written at once. */
 static void test_same(void **state)
 {
     const fixture *f = *state;
@@ -145,7 +145,7 @@ static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
     return (int64_t)bytes;
 }
 
-/** Segments are found by the headers of all chunks, and by the index where HEAD is settled. */
+/** Segments are found by the headers of all chunks, or by the index if HEAD is settled. */
 static void test_seek(void **state)
 {
     fixture *f = *state;
@@ -158,7 +158,7 @@ static void test_seek(void **state)
     adcgs_close(&d);
 }
 
-/** HEAD, settled, is that of the stream that was written as a whole, but for anchors that only the grown one has room for. */
+/** The settled HEAD equals that of the stream written at once. The grown one only has room for more anchors. */
 static void test_settle(void **state)
 {
     const fixture *f = *state;
@@ -168,7 +168,7 @@ static void test_settle(void **state)
     assert_memory_equal(f->head.data, f->whole.data + ADCGS_SIGNATURE_BYTES + ADCGS_CHUNK_HEADER_BYTES, f->head.size);
 }
 
-/** What does not fit, or does not follow, changes nothing. */
+/** Segments that do not fit, or do not follow, change nothing. */
 static void test_refused(void **state)
 {
     const fixture *f = *state;
@@ -184,7 +184,7 @@ static void test_refused(void **state)
     assert_int_equal(adcgs_grow_end(grow, &out, NULL), ADCGS_ERR_USAGE);
     assert_int_equal(adcgs_grow_segment(grow, NULL, &models[1], &out, NULL), ADCGS_ERR_USAGE); /* predicted */
     assert_int_equal(adcgs_grow_segment(grow, NULL, &models[0], &out, NULL), ADCGS_OK);
-    assert_int_equal(adcgs_grow_segment(grow, NULL, &models[0], &out, NULL), ADCGS_ERR_USAGE); /* again */
+    assert_int_equal(adcgs_grow_segment(grow, NULL, &models[0], &out, NULL), ADCGS_ERR_USAGE); /* the same segment again */
     assert_int_equal(out.size, f->at[1]);
     assert_int_equal(adcgs_grow_segment(grow, &models[0], &models[1], &out, NULL), ADCGS_OK);
     assert_int_equal(out.size, f->at[2]);
@@ -193,7 +193,7 @@ static void test_refused(void **state)
 
     out.size = 0;
     adcgs_model deep = models[3];
-    deep.depth = 13; /* deeper than the level allows, which is noticed when HEAD and SEGM are written */
+    deep.depth = 13; /* deeper than the level allows, which is detected when HEAD and SEGM are written */
     assert_int_equal(adcgs_grow_create(&grow, &small, models[0].n - 1, NULL), ADCGS_OK);
     assert_int_equal(adcgs_grow_segment(grow, NULL, &models[0], &out, NULL), ADCGS_ERR_LIMIT); /* larger than promised */
     assert_int_equal(out.size, 0);
@@ -221,7 +221,7 @@ static void test_refused(void **state)
     adcgs_buffer_clear(&out);
 }
 
-/* ---- Joining ---- */
+/* ---- Tune-in ---- */
 
 static adcgs_config joining(void)
 {
@@ -257,7 +257,7 @@ static adcgs_status push_from(adcgs_decoder *d, const adcgs_buffer *b, size_t at
     return status == ADCGS_OK ? adcgs_push_end(d, error) : status;
 }
 
-/** From each byte on: all segments from the next key on, and it is said which one that is; nothing where there is none. */
+/** Tune-in at each byte gives all segments from the next key on, and reports which key that is; nothing if there is none. */
 static void test_join(void **state)
 {
     const fixture *f = *state;
@@ -269,7 +269,7 @@ static void test_join(void **state)
         adcgs_span from = { .next = f->grown.data + at, .left = left, .step = 50 };
         adcgs_info info;
         int heads[1] = { 0 };
-        if (at % 9 && at > 200 && at + 3 < f->at[first < SEGMENTS ? first : SEGMENTS]) /* the rest is slow */
+        if (at % 9 && at > 200 && at + 3 < f->at[first < SEGMENTS ? first : SEGMENTS]) /* trying every byte would be slow */
             continue;
         assert_int_equal(adcgs_open_push(&pushed, &config, NULL), ADCGS_OK);
         const adcgs_status status = push_from(pushed, &f->grown, at, f->grown.size, at % 7 ? 1000 : 1, heads, NULL);
@@ -291,7 +291,7 @@ static void test_join(void **state)
     }
 }
 
-/** Who joined can draw nothing before something of the key is there that can be drawn. */
+/** After tune-in nothing can be rendered before a usable part of the key is present. */
 static void test_join_early(void **state)
 {
     const fixture *f = *state;
@@ -314,7 +314,7 @@ static void test_join_early(void **state)
     adcgs_close(&d);
 }
 
-/** Garbage in front, a header that is none, one whose payload is damaged; a stream that ends before its key; nobody who joins. */
+/** Garbage in front; an invalid header; a damaged payload of a header; a stream that ends before its key; no tune-in. */
 static void test_join_damage(void **state)
 {
     const fixture *f = *state;
@@ -337,7 +337,7 @@ static void test_join_damage(void **state)
     check_models(f, d, TURN);
     adcgs_close(&d);
 
-    for (size_t end = damaged; end < b.size; end += end < b.size - 400 ? 11 : 1) { /* who has joined may see it end early */
+    for (size_t end = damaged; end < b.size; end += end < b.size - 400 ? 11 : 1) { /* after tune-in the stream may end early */
         assert_int_equal(adcgs_open_push(&d, &config, NULL), ADCGS_OK);
         const adcgs_status status = push_from(d, &b, 0, end, 4096, heads, &error);
         assert_true(status == ADCGS_OK || status == (end < damaged + 2 * head ? ADCGS_ERR_DATA : ADCGS_ERR_TRUNCATED));
@@ -353,7 +353,7 @@ static void test_join_damage(void **state)
     adcgs_buffer_clear(&b);
 }
 
-/** The source is read to the end of the stream and not beyond, joined or not. */
+/** The source is read to the end of the stream and not beyond, with and without tune-in. */
 static void test_not_beyond(void **state)
 {
     const fixture *f = *state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The hull of silhouettes: of a ball that views see from all round, and of what says nothing. */
+/** \file The visual hull of silhouettes: of a ball seen from all sides, and of views without evidence. */
 #include "stereo/hull.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ static float pixels[VIEWS][4 * PLANE];
 static const adcgs_stereo_point like = { .t = 0.25f, .moves = 1 };
 static adcgs_error error;
 
-/** Views about the z axis, a quarter of a turn apart, that look at it; each sees another grey. */
+/** Views about the z axis, a quarter turn apart, that look at it. Each sees another grey. */
 static int put_views(void **state)
 {
     for (int i = 0; i < VIEWS; i++) {
@@ -34,7 +34,7 @@ static int put_views(void **state)
     return 0;
 }
 
-/** Whether the ray of a pixel meets the ball. */
+/** True if the ray of a pixel meets the ball. */
 static int meets(const adcgs_stereo_view *v, int px, int py)
 {
     double along = 0, to2 = 0, x[3], ray2 = 0;
@@ -69,7 +69,7 @@ static double from_centre(const adcgs_stereo_point *p)
     return sqrt(pow(p->x[0] - centre[0], 2) + pow(p->x[1] - centre[1], 2) + pow(p->x[2] - centre[2], 2));
 }
 
-/** The hull of a ball holds it; seen from four sides it is a rounded box, whose edges stand out by less than half. */
+/** The hull of a ball contains it. From four sides it is a rounded box, whose edges stand out by less than half. */
 static void a_ball_has_its_surface(void **state)
 {
     put_ball();
@@ -86,7 +86,7 @@ static void a_ball_has_its_surface(void **state)
     adcgs_stereo_list_clear(&list);
 }
 
-/** A point has the look of a view on its side, but for a few at the box's edges, along which views look. */
+/** A point has the colour of a view on its side, except for a few at the box's edges, along which views look. */
 static void points_look_as_who_sees_them(void **state)
 {
     size_t astray = 0;
@@ -100,12 +100,12 @@ static void points_look_as_who_sees_them(void **state)
         const double side = (p->x[0] - centre[0]) * c[0] + (p->x[1] - centre[1]) * c[1];
         astray += side < -0.3 * RADIUS * AWAY;
     }
-    print_message("%zu of %zu points look as from behind\n", astray, list.n);
+    print_message("%zu of %zu points have the colour of a view from behind\n", astray, list.n);
     assert_true(astray < list.n / 20);
     adcgs_stereo_list_clear(&list);
 }
 
-/** A silhouette with a hole as wide as a few pixels is whole. */
+/** A silhouette with a hole of a few pixels is whole. */
 static void holes_are_closed(void **state)
 {
     put_ball();
@@ -121,7 +121,7 @@ static void holes_are_closed(void **state)
     adcgs_stereo_list_clear(&closed);
 }
 
-/** What one view does not see move is not there; where all is in motion nothing can be said, and that soon. */
+/** A view that sees no motion removes everything. If everything moves, there is no evidence, and the search ends soon. */
 static void what_says_nothing(void **state)
 {
     put_ball();

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Scenes in the layout of HyperNeRF: every field, every kind of bad input, real scenes where they are at hand. */
+/** \file Scenes in the layout of HyperNeRF: every field, every kind of bad input, and real scenes where available. */
 #include "outside_files.h"
 
 #include "data/scene.h"
@@ -10,13 +10,13 @@
 
 static adcgs_scene *scene;
 
-/* Pictures are 6x4. The first camera is turned by a quarter about its axis: its x axis is the world's y. */
+/* Images are 6x4. The first camera is turned by a quarter about its axis: its x axis is the world's y. */
 #define LENS "\"focal_length\":8,\"principal_point\":[2.5,2.25],\"image_size\":[6,4]"
 #define TURNED "\"orientation\":[[0,1,0],[-1,0,0],[0,0,1]],\"position\":[1,2,3]"
 #define PLAIN "\"orientation\":[[1,0,0],[0,1,0],[0,0,1]],\"position\":[0,0,-5]"
 #define ZERO "\"skew\":0.0,\"pixel_aspect_ratio\":1.5,\"radial_distortion\":[0,1e-7,0],\"tangential_distortion\":[0,0]"
 
-/** The files of a good scene; a test puts others in their place. */
+/** The files of a good scene; tests replace some of them. */
 static const struct {
     const char *name, *text;
 } good[] = {
@@ -110,7 +110,7 @@ static void test_fields(void **state)
     const double expected[12] = {0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 2}, plain[12] = {1, 0, 0, -0.5, 0, 1, 0, 0, 0, 0, 1, -2};
     for (int i = 0; i < 12; i++)
         assert_true(a->camera.cam_to_world[i] == expected[i] && c->camera.cam_to_world[i] == plain[i]);
-    /* Times are warp ids, numbers of frames; the scene ends with the largest of all, whatever is for training. */
+    /* Times are warp ids, which count frames. The scene ends with the largest of all, in whichever split. */
     assert_true(scene->n_times == 2 && adcgs_fps_value(scene->rate) == 30.0 && scene->duration == 8.0 / 30.0);
     assert_true(a->time == 0.0 && fabs(b->time - 3.0 / 30.0) < 1e-15 && fabs(c->time - 4.0 / 30.0) < 1e-15);
     assert_int_equal(scene->points.n, 2);
@@ -123,7 +123,7 @@ static void test_fields(void **state)
     const adcgs_scene_options options = {.rate = {10, 1}, .points_path = in("other.npy")};
     put_bytes("other.npy", NPY NUMBERS, sizeof NPY + sizeof NUMBERS - 2);
     put_text("points.npy", "not looked at");
-    expect_good(adcgs_scene_open(&scene, folder, &options, &error)); /* points of one's own are in world units already */
+    expect_good(adcgs_scene_open(&scene, folder, &options, &error)); /* points given by the user are in world units already */
     assert_true(scene->duration == 0.8 && scene->points.n == 2 && scene->points.position[0][1] == 2.0);
     adcgs_scene_free(&scene);
 }
@@ -144,7 +144,7 @@ static void test_rule(void **state)
     adcgs_scene_free(&scene);
 }
 
-/** The largest pictures count; those at 1/N of full size have cameras to match. */
+/** The largest images are used; if they are at 1/N of full size, cameras are scaled to match. */
 static void test_reduced(void **state)
 {
     put_text("dataset.json", "{\"train_ids\":[\"c\"],\"val_ids\":[\"b\"]}");
@@ -168,7 +168,7 @@ static void test_reduced(void **state)
     assert_int_equal(rename(in("rgb/65x"), in("rgb/1x")), 0);
 }
 
-/** Points are those of the file, in its order, whatever the cameras see of them. None is fine. */
+/** Points are those of the file, in its order, whether or not a camera sees them. None is valid. */
 static void test_points(void **state)
 {
     put_text("scene.json", "{\"center\":[0,0,0],\"scale\":1}");
@@ -182,7 +182,7 @@ static void test_points(void **state)
     adcgs_scene_free(&scene);
 }
 
-/** Nothing but the test views themselves comes from the test views. */
+/** Test views change nothing but themselves. */
 static void test_apart(void **state)
 {
     adcgs_scene *first;
@@ -204,7 +204,7 @@ static void test_apart(void **state)
     adcgs_scene_free(&scene);
 }
 
-/** What is up in the pictures tells the world's axes. */
+/** The up direction of the images determines the world's axes. */
 static void test_axes(void **state)
 {
     static const struct {
@@ -224,7 +224,7 @@ static void test_axes(void **state)
     }
 }
 
-/** transforms.json goes before the files of this layout, and all of these must be there. */
+/** transforms.json has priority over the files of this layout, which must all be present. */
 static void test_detection(void **state)
 {
     put_text("transforms.json", "{}");
@@ -288,7 +288,7 @@ static void test_bad_scene(void **state)
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "points.npy: point 0", "2e+09");
 }
 
-/** A camera with the fields given. */
+/** Expects an error for a camera with these fields. */
 static void bad_camera(const char *fields, adcgs_status status, const char *what)
 {
     char text[512];
@@ -334,7 +334,7 @@ static void test_bad_cameras(void **state)
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "rgb/1x", "no image of d");
 }
 
-/** One byte of a good file at a time gets another value, or the file ends there: never a crash, always a reason in one line. */
+/** Replaces one byte of a good file at a time, or ends the file there: never a crash, always a reason in one line. */
 static void mutate(const char *name, const char *bytes, size_t size)
 {
     static const char values[] = "\0\"[}9-e,\xff\n";
@@ -363,7 +363,7 @@ static void test_mutations(void **state)
 
 /* ---- Real scenes ---- */
 
-/** The pixel that a point falls on; 0 if it is not in front of the camera and inside the frame. */
+/** The pixel of a projected point; 0 if it is not in front of the camera and inside the frame. */
 static int find_pixel(const adcgs_camera *c, uint32_t point, size_t *pixel)
 {
     const double *m = c->cam_to_world;
@@ -387,7 +387,7 @@ static double share_seen(const adcgs_camera *c)
     return (double)inside / scene->points.n;
 }
 
-/** How much the red of a point varies from view to view: its variance over that of all points. 1 if poses say nothing. */
+/** Variance of a point's red from view to view, over that of all points; 1 if poses are meaningless. */
 static double inconsistency(void)
 {
     enum { VIEWS = 8, STEP = 9 };
@@ -419,7 +419,7 @@ static double number(json_t *array, size_t i)
     return json_number_value(json_array_get(array, i));
 }
 
-/** A view's camera against the pose as published: [R|t|h,w,f], camera to world in OpenGL axes, other coordinates. */
+/** A view's camera against the published pose: [R|t|h,w,f], camera to world in OpenGL axes, other coordinates. */
 static void check_published(const adcgs_camera *c, json_t *poses, const double centre[3], double scale)
 {
     unsigned int index;
@@ -437,7 +437,7 @@ static void check_published(const adcgs_camera *c, json_t *poses, const double c
     assert_true(c->width == w && c->height == h && fabs(c->fx - f) < 1e-4 && c->fy == c->fx && c->cx == w / 2 && c->cy == h / 2);
 }
 
-/** Cameras are those that the scene's makers published in another form, and see the points that were triangulated with them. */
+/** Cameras equal those that the scene's authors published in another form, and see the points triangulated with them. */
 static void test_hand(void **state)
 {
     const char *path = real_data("nrnerf_hand");
@@ -460,7 +460,7 @@ static void test_hand(void **state)
             assert_true(share_seen(c) > 0.85);
         }
     assert_true(inconsistency() < 0.5);
-    assert_true(scene->duration == 85.0 / 30.0); /* 86 pictures, test pictures among them */
+    assert_true(scene->duration == 85.0 / 30.0); /* 86 images, test images among them */
     assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][10].time - scene->duration * 84.0 / 85.0) < 1e-12);
     float *rgb;
     expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TEST][10], 1, &rgb, NULL, &error));
@@ -470,7 +470,7 @@ static void test_hand(void **state)
     adcgs_scene_free(&scene);
 }
 
-/** Three real cameras with missing moments and principal points off the middle; pictures at half size, made up. */
+/** Three real cameras with missing frames and principal points off the centre; synthetic images at half size. */
 static void test_windmill(void **state)
 {
     const char *path = real_data("dycheck_paper-windmill_cameras");
@@ -507,7 +507,7 @@ static void test_windmill(void **state)
     adcgs_scene_free(&scene);
 }
 
-/** Masks in mask/Nx, of the N of the pictures, where they are. */
+/** Masks in mask/Nx are used, where present, at the N of the images. */
 static void test_masks(void **state)
 {
     adcgs_image mask;

@@ -21,7 +21,7 @@ static void make_image(adcgs_image *image, int channels)
         image->data[i] = (float)(64 + i % 190) / 255.0f;
 }
 
-/** Write, probe, read; the largest difference. */
+/** Writes, probes and reads; returns the largest difference. */
 static double round_trip(const char *name, int channels, int half)
 {
     adcgs_image image, back;
@@ -130,7 +130,9 @@ static void test_cuts(void **state)
     adcgs_image_free(&image);
 }
 
-/** PNG and JPEG that end anywhere before their end are refused, as is a PNG in which any byte is another; more behind is fine. */
+/**
+ * PNG and JPEG files that end early are refused, as is a PNG file with any byte changed. Additional bytes at the end are valid.
+ */
 static void test_whole(void **state)
 {
     static const char *const names[] = {"w.png", "w.jpg"};
@@ -228,7 +230,9 @@ static void expect_text(const char *name, const char *text)
     assert_string_equal(held, text);
 }
 
-/** A new file has what the umask leaves, one that replaces another the other's mode, and a protected one is not replaced. */
+/**
+ * A new file has the mode that the umask leaves. A replacing file keeps the other's mode, and a protected file is not replaced.
+ */
 static void test_modes(void **state)
 {
     const mode_t before = umask(027);
@@ -240,13 +244,13 @@ static void test_modes(void **state)
     expect_text("m", "two");
     umask(before);
     assert_int_equal(chmod(in("m"), 0444), 0);
-    if (access(in("m"), W_OK)) { /* else we are root, who may */
+    if (access(in("m"), W_OK)) { /* else we are root, and may */
         expect_error(adcgs_atomic_save(in("m"), "three", 5, &error), ADCGS_ERR_IO, "m", "Permission denied");
         expect_text("m", "two");
     }
 }
 
-/** Through links, relative ones in another folder too, the file that they end at is written, be it there or not. */
+/** Writing through links, relative ones in another folder too, writes the final target, whether it exists or not. */
 static void test_links(void **state)
 {
     assert_int_equal(mkdir(in("deep"), 0777), 0);
@@ -363,7 +367,7 @@ static void test_sinks(void **state)
     expect_error(sink_frames(in("i%d.ppm"), NULL, ADCGS_DEPTH_FLOAT, 2), ADCGS_ERR_USAGE, "i%d.ppm", "float");
     expect_error(sink_frames(in("i%d.ppm"), NULL, ADCGS_DEPTH_HALF, 2), ADCGS_ERR_USAGE, "i%d.ppm", "half");
     expect_error(sink_frames("-", "png", ADCGS_DEPTH_DEFAULT, 2), ADCGS_ERR_USAGE, "standard output", "png");
-    /* A format that is named counts more than the name's end; videos have both. */
+    /* A named format has priority over the extension; videos need both. */
     assert_int_equal(sink_frames(in("k.ppm"), NULL, ADCGS_DEPTH_DEFAULT, 1), ADCGS_OK);
     assert_int_equal(sink_frames(in("nameless"), "ppm", ADCGS_DEPTH_DEFAULT, 1), ADCGS_OK);
     assert_int_equal(size_of("nameless"), size_of("k.ppm"));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Predicted segments: what is kept of a model comes back, whatever it is; what cannot follow is refused. */
+/** \file Predicted segments: any predicted model is decoded exactly; models that cannot be predicted are refused. */
 #include "random_model.h"
 #include "stream_edit.h"
 
@@ -44,7 +44,7 @@ static adcgs_params some_params(uint64_t *seed)
     return params;
 }
 
-/** A stream of one random model, with room for more segments; those are appended by the functions below. */
+/** A stream of one random model, with room for more segments, which the functions below append. */
 static void make_stream(adcgs_stream *stream, const adcgs_params *params, uint32_t room, uint32_t n, uint64_t *seed)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -75,7 +75,7 @@ static void append_follower(adcgs_stream *stream, uint32_t n, uint64_t *seed)
     next_segment(stream);
 }
 
-/** One segment more whose anchors are those of the one before, of which every nth is left out; 0: none. */
+/** Appends a segment with the anchors of the one before, without every nth one; 0: with all. */
 static adcgs_model *append_same(adcgs_stream *stream, uint32_t nth)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -107,7 +107,7 @@ static void check_models(const adcgs_stream *a, const adcgs_stream *b)
     }
 }
 
-/** The stream comes back, and is written again as the same bytes. \return payload bytes of its last KEEP; anchors: its GEOM's. */
+/** Reads the stream back and writes it again as the same bytes. \return payload bytes of its last KEEP; anchors: its GEOM's. */
 static size_t check_round_trip(adcgs_stream *stream, uint32_t *anchors)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -151,7 +151,7 @@ static void test_round_trip(void **state)
     }
 }
 
-/** What stays as it is costs next to nothing: no network, no position, a few bytes of modes. */
+/** An unchanged model costs almost nothing: no network, no position, a few bytes of modes. */
 /* REQ-STRM-043, REQ-STRM-046, REQ-LATN-015 */
 static void test_all_kept(void **state)
 {
@@ -174,7 +174,10 @@ static void test_all_kept(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** Anchors that vanish, one in three or all of them: then others, that differ in what has no differences, have their places. */
+/**
+ * Dropped anchors, one in three or all of them. In the second case new ones take their places, with other values in the fields
+ * that have no differences.
+ */
 /* REQ-LATN-015, REQ-STRM-047 */
 static void test_dropped(void **state)
 {
@@ -199,7 +202,7 @@ static void test_dropped(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** Set a latent of each third anchor, if it has the channel. \return how many anchors changed. */
+/** Changes a latent of each third anchor, if it has the channel. \return number of changed anchors. */
 static int change_latents(adcgs_model *m, int group, int channel, int32_t steps)
 {
     const int n = adcgs_keep_channels(&m->params, group);
@@ -215,7 +218,7 @@ static int change_latents(adcgs_model *m, int group, int channel, int32_t steps)
     return changed;
 }
 
-/** Differences of any size, to the limits and beyond, in every channel; then none of the anchors is new. */
+/** Differences of any size, to the limits and beyond, in every channel; no anchor is new. */
 /* REQ-LATN-016, REQ-LATN-017, REQ-LATN-018 */
 static void test_differences(void **state)
 {
@@ -239,7 +242,7 @@ static void test_differences(void **state)
         }
 }
 
-/** A change that is no whole step, or of what has no differences: such anchors are dropped, and new if they can be. */
+/** A change by a fraction of a step, or of a value without differences, drops an anchor. It is new if possible. */
 /* REQ-LATN-016 */
 static void test_out_of_reach(void **state)
 {
@@ -258,7 +261,7 @@ static void test_out_of_reach(void **state)
     m->mask[3] ^= 1;
     m->is_static[4] ^= 1;
     m->colour[3 * 5] = (int16_t)(m->colour[3 * 5] - 32);
-    m->fv[3 * 6] = 32767; /* the limits are met from anywhere */
+    m->fv[3 * 6] = 32767; /* the limits are reachable from any value */
     m->fv[3 * 7] = -32767;
     check(adcgs_kept_find(&kept, m - 1, m, &error), &error);
     for (uint32_t i = 0; i < m->n; i++)
@@ -268,7 +271,7 @@ static void test_out_of_reach(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** New networks are sent, others are not; a network may be added, but not taken away. */
+/** New networks are sent, others are not. A segment may add a network, but not remove one. */
 /* REQ-STRM-043, REQ-STRM-021 */
 static void test_networks(void **state)
 {
@@ -285,7 +288,7 @@ static void test_networks(void **state)
     check_round_trip(&stream, NULL);
     const uint64_t none = stream.bytes.networks;
     adcgs_model other;
-    do { /* until chance gives it one */
+    do { /* until the random model has one */
         check(adcgs_random_model(&other, &params, 1, 4, &seed, &error), &error);
         if (other.net[ADCGS_ROLE_COARSE].present)
             check(adcgs_net_copy(&m->net[ADCGS_ROLE_COARSE], &other.net[ADCGS_ROLE_COARSE], NULL, &error), &error);
@@ -338,7 +341,7 @@ static void test_writer_refuses(void **state)
         *(uint8_t *)changes[i].place ^= 1;
     }
     check_round_trip(&stream, NULL);
-    m->sigma[4] = (int16_t)(m->sigma[4] ^ 1); /* within no reach, and no network gives it */
+    m->sigma[4] = (int16_t)(m->sigma[4] ^ 1); /* neither reachable by a difference nor given by a network */
     check_refused(&stream, "");
     adcgs_stream_clear(&stream, NULL);
 }
@@ -354,7 +357,7 @@ static void make_small(adcgs_stream *stream, adcgs_buffer *bytes)
     write_stream(stream, bytes);
 }
 
-/** However much of a stream is there, its whole segments are used, and the cut one if its base layer is there. */
+/** From any part of a stream, whole segments are used, and the cut one if its base layer is present. */
 /* REQ-STRM-031, REQ-STRM-048 */
 static void test_cut_anywhere(void **state)
 {
@@ -365,7 +368,7 @@ static void test_cut_anywhere(void **state)
     make_small(&stream, &bytes);
     for (size_t n = 0; n < bytes.size; n++) {
         adcgs_error error = { ADCGS_OK, "" };
-        uint8_t *copy = malloc(n + (n == 0)); /* exactly n bytes: a sanitizer sees one too far */
+        uint8_t *copy = malloc(n + (n == 0)); /* exactly n bytes: a sanitizer detects a read beyond */
         assert_non_null(copy);
         memcpy(copy, bytes.data, n);
         if (read_stream(&part, copy, n, &plain, &error) != ADCGS_OK) {
@@ -388,7 +391,7 @@ static void test_cut_anywhere(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** A stream that was damaged, and could be read all the same: what is whole of it has the digests that it had. */
+/** Whole segments of a damaged but readable stream have their original digests. */
 static void check_same(const adcgs_stream *stream, const adcgs_stream *part)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -403,7 +406,7 @@ static void check_same(const adcgs_stream *stream, const adcgs_stream *part)
     }
 }
 
-/** Damage to any byte is noticed. Where checksums have been made right again, digests let no other model through. */
+/** Damage to any byte is detected. With repaired checksums, digests still detect any other model. */
 /* REQ-STRM-004, REQ-STRM-027, REQ-CONF-005 */
 static void test_damage(void **state)
 {
@@ -418,7 +421,7 @@ static void test_damage(void **state)
         memcpy(copy, bytes.data, bytes.size);
         copy[i] ^= (uint8_t)(1 << i % 8);
         if (read_stream(&part, copy, bytes.size, &plain, &error) == ADCGS_OK)
-            fail_msg("byte %zu: damage went unnoticed", i);
+            fail_msg("byte %zu: damage was not detected", i);
         adcgs_repair_stream(copy, bytes.size, 0);
         if (read_stream(&part, copy, bytes.size, &plain, &error) != ADCGS_OK)
             continue;
@@ -431,7 +434,7 @@ static void test_damage(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** Fewer layers: what is new and what was kept have the lower layers right; no digest is compared. */
+/** Fewer layers: the lower layers of new and of predicted anchors are right; no digest is compared. */
 /* REQ-STRM-042, REQ-STRM-048, REQ-LATN-007 */
 static void test_layers(void **state)
 {

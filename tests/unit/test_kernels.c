@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /**
  * \file
- * Every kernel at every CPU level that this machine has, on ordinary, wide and extreme numbers (zeros of both signs, subnormals,
- * the largest, infinities, NaN): nothing is written beside the outputs, and
- *  - kernels that decide what is decoded, and those that promise it, give the bits of the portable ones (a NaN is a NaN);
- *  - other kernels of training give what the portable ones do, but for the order of sums and fused products.
+ * Every kernel at every CPU level of this machine, on ordinary, wide and extreme numbers (zeros of both signs, subnormals, the
+ * largest, infinities, NaN). Nothing is written outside the outputs, and
+ * - kernels that determine the decoded result, and those that promise the same, give the bits of the portable ones, with any
+ *   NaN equal to any other;
+ * - other kernels of training give the results of the portable ones, except for the order of sums and fused products.
  * The integer networks' kernels are in test_net.c: their inputs are checked when a network is loaded.
  */
 #include "config.h"
@@ -26,9 +27,9 @@
 enum { ROUNDS = 12, GUARD = 64, GUARD_BYTE = 0x5a, BUFFERS = 32, L = 64 };
 typedef enum kind { ORDINARY, WIDE, EXTREME, KINDS } kind;
 
-/* ---- What kernels read and write ---- */
+/* ---- Inputs and outputs of kernels ---- */
 
-/** A call's arrays: given ones, which every level gets alike, and outputs, which are compared. All have guards on both sides. */
+/** The arrays of a call: inputs, the same for every level, and outputs, which are compared. All have guards on both sides. */
 typedef struct call {
     adcgs_cpu_level level;
     kind kind;
@@ -82,7 +83,7 @@ static float *given(call *c, size_t n)
     return given_of(c, n, c->kind);
 }
 
-/** n times one number. */
+/** One number, n times. */
 static float *constant(call *c, size_t n, float x)
 {
     float *const p = take(c, n, 0);
@@ -91,7 +92,7 @@ static float *constant(call *c, size_t n, float x)
     return p;
 }
 
-/** An output that is written whole; or, with a start, added to. */
+/** An output that the kernel writes completely, or adds to if it has a start. */
 static float *output(call *c, size_t n)
 {
     return take(c, n, 1);
@@ -126,7 +127,7 @@ static void dense(call *c)
 
 #define FLOATS(type) (sizeof(type) / sizeof(float))
 
-/** All that may move anchors, alone and together. */
+/** Everything that may move anchors, alone and together. */
 static adcgs_movers movers_of(const call *c)
 {
     const int coarse = c->round % 3 > 0;
@@ -141,7 +142,7 @@ static int32_t *flags(call *c)
     return p;
 }
 
-/** In some rounds, bodies that take some of the anchors along. */
+/** In some rounds, bodies that move some of the anchors. */
 static const adcgs_body_lanes *bodies_of(call *c)
 {
     adcgs_body_lanes *const bodies = (void *)given(c, FLOATS(adcgs_body_lanes));
@@ -189,7 +190,7 @@ static void slots(call *c)
     dsp.deform(&to, slot, motion, &movers, bodies, fewer ? NULL : fine, present, moves);
 }
 
-/* ---- The renderer, and what training promises as well ---- */
+/* ---- The renderer, and kernels of training with the same promise ---- */
 
 static const float background[3] = {0.1f, 0.5f, 0.9f};
 
@@ -206,7 +207,7 @@ static adcgs_primitives splats(call *c, uint32_t n)
     }
     for (int i = 0; i < 4; i++)
         p.rotation[i] = given(c, n);
-    for (uint32_t k = 0; k < n; k++) /* what networks make of anything */
+    for (uint32_t k = 0; k < n; k++) /* networks limit opacity to this range */
         ((float *)(uintptr_t)p.opacity)[k] = fminf(fmaxf(p.opacity[k], 0.0f), 0.99f);
     return p;
 }
@@ -224,7 +225,7 @@ static void frames(call *c)
     assert_int_equal(adcgs_view_init(&view, &camera, origin, 1, NULL), ADCGS_OK);
     assert_int_equal(adcgs_raster_create(&raster, c->level, NULL, NULL, NULL), ADCGS_OK);
     assert_int_equal(adcgs_raster_forward(raster, &p, &view, background, 0.3f, rgb, 1, NULL), ADCGS_OK);
-    if (c->kind != EXTREME) { /* gradients of what is not a number are none */
+    if (c->kind != EXTREME) { /* values that are not numbers have no gradients */
         adcgs_raster_back *back;
         float *const to = output(c, (ADCGS_GRAD_ROWS - 1) * 256);
         adcgs_raster_grads grads = adcgs_raster_grads_of(to, 256);
@@ -294,7 +295,7 @@ static void rows(call *c)
     spread(output(c, many), below, n);
 }
 
-/** A residual layer and the way back through it, wider than what is made at a time. */
+/** A residual layer and its backward pass, wider than one batch. */
 static void residual(call *c)
 {
     const adcgs_train_dsp dsp = train_dsp(c);
@@ -328,7 +329,7 @@ static void rates(call *c)
                         .x = c->round & 1 ? output(c, many) : NULL};
     *output(c, 1) = (float)dsp.rate(&io);
     if (c->kind == ORDINARY)
-        return; /* a value half-way between two levels may go either way, which moves its bits by a step */
+        return; /* a value half-way between two levels may go either way, which changes its bits by a step */
     io.mean = output(c, many);
     *output(c, 1) = (float)dsp.rate_exact(&io);
 }
@@ -352,7 +353,7 @@ static int same(float a, float b)
     return !memcmp(&a, &b, sizeof a) || (isnan(a) && isnan(b));
 }
 
-/** Relative to the largest number of the output, since what is added up may cancel. */
+/** Relative to the largest number of the output, since sums may cancel. */
 static int close_enough(float a, float b, float largest)
 {
     return same(a, b) || a == b || fabsf(a - b) <= 1e-4f * largest;
@@ -365,7 +366,7 @@ static void check_guards(const call *c, const char *what)
         const unsigned char *const behind = (const void *)(c->buffer[i].block + GUARD + c->buffer[i].size);
         for (size_t k = 0; k < GUARD * sizeof(float); k++)
             if (before[k] != GUARD_BYTE || behind[k] != GUARD_BYTE)
-                fail_msg("%s: level %d writes beside array %d, round %d", what, (int)c->level, i, c->round);
+                fail_msg("%s: level %d writes outside array %d, round %d", what, (int)c->level, i, c->round);
     }
 }
 
@@ -378,7 +379,7 @@ static void compare(const subject *s, const call *expected, const call *c)
             largest = fmaxf(largest, fabsf(a[k]));
         for (size_t k = 0; c->buffer[i].output && k < c->buffer[i].size; k++)
             if (!(s->exact ? same(a[k], b[k]) : c->kind != ORDINARY || close_enough(a[k], b[k], largest)))
-                fail_msg("%s: array %d, number %zu of %zu is %a at level %d, %a portably; kind %d, round %d", s->name, i, k,
+                fail_msg("%s: array %d, number %zu of %zu is %a at level %d, expected %a; kind %d, round %d", s->name, i, k,
                          c->buffer[i].size, (double)b[k], (int)c->level, (double)a[k], (int)c->kind, c->round);
     }
 }

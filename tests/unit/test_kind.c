@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Kinds of files by their first bytes; images are read by the reader of their kind, and nothing else is opened. */
+/** \file Kinds of files by their first bytes. Images are read by the reader of their kind, and no other file is opened. */
 #include "outside_files.h"
 
 #include "io/image.h"
@@ -20,7 +20,7 @@ const char *__lsan_default_suppressions(void)
     return "leak:libx265";
 }
 
-/** The kind of a file of so many bytes that are here and zeros up to `size`. */
+/** The kind of a file with these first n bytes and zeros up to `size`. */
 static const adcgs_kind *kind_of(const char *name, const char *bytes, size_t n, size_t size)
 {
     static uint8_t begin[ADCGS_KIND_BYTES];
@@ -163,7 +163,7 @@ static void test_no_images(void **state)
     refused("x.adcgs", BYTES("\x8b""ADC\r\n\x1a\n"), ADCGS_ERR_DATA, "an adcgs stream, expected an image");
 }
 
-/** Sizes are held against the bound before there is memory for pixels. */
+/** Sizes are checked against the bound before memory is allocated for pixels. */
 static void test_sizes(void **state)
 {
     refused("x.gif", BYTES("GIF89a\xff\xff\xff\xff\x80\0\0\0\0\0\xff\xff\xff,\0\0\0\0\xff\xff\xff\xff\0\2\2D\1\0;"),
@@ -177,7 +177,7 @@ static void test_sizes(void **state)
 }
 
 #ifdef __linux__
-/** Whether somebody opened a file of the folder since watching began. */
+/** True if a file of the folder was opened since watching began. */
 static int was_opened(int watch, const char *name)
 {
     char buffer[8192] __attribute__((aligned(8)));

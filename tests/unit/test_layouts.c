@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What holds for scenes of every layout: test views have no part in where training starts, frames can be chosen, a kind can be
+ * Properties of scenes of every layout: test views do not affect the start of training, frames can be selected, a kind can be
  * forced.
  */
 #include "layout_kinds.h"
@@ -24,7 +24,7 @@ static const char *scene_path(const layout *l)
     return *l->scene ? in(l->scene) : folder;
 }
 
-/** Make the folder anew. */
+/** Makes the folder again from scratch. */
 static void begin_anew(const layout *l)
 {
     assert_int_equal(remove_folder(NULL), 0);
@@ -32,9 +32,9 @@ static void begin_anew(const layout *l)
     l->put();
 }
 
-/* ---- Apart ---- */
+/* ---- Test views kept apart ---- */
 
-/** All that training begins with. */
+/** Everything that training starts from. */
 typedef struct start {
     adcgs_scene *scene;
     double origin[3], scale;
@@ -92,7 +92,7 @@ static void expect_same(const start *a, const start *b)
 
 enum { REPLACE, REMOVE };
 
-/** Do it to all files of the test views; how many. */
+/** Removes or replaces all files of the test views. Returns their number. */
 static int touch_tests(const layout *l, int what)
 {
     int n = 0;
@@ -108,7 +108,7 @@ static int touch_tests(const layout *l, int what)
     return n;
 }
 
-/** Once a scene is open, cameras and times of its test views are no numbers, and their files are not there. */
+/** Makes cameras and times of an open scene's test views NaN, and removes their files. */
 static void spoil_tests(const layout *l, adcgs_scene *opened)
 {
     for (int s = ADCGS_SPLIT_VAL; s < ADCGS_SPLITS; s++)
@@ -122,7 +122,7 @@ static void spoil_tests(const layout *l, adcgs_scene *opened)
     assert_true(!l->tests || touch_tests(l, REMOVE) > 0);
 }
 
-/** Other test views, from elsewhere, which are gone once the scene is open, leave the start of training as it is, to the bit. */
+/** Other test views, from elsewhere and deleted after the scene was opened, leave the start of training unchanged, to the bit. */
 static void test_apart(void **state)
 {
     for (size_t i = 0; i < LAYOUTS; i++) {
@@ -151,7 +151,7 @@ static void test_apart(void **state)
     }
 }
 
-/** Training views do have a part, their pictures and their poses: the test above would notice. */
+/** Images and poses of training views do change the start of training: the test above can fail. */
 static void test_apart_notices(void **state)
 {
     for (int moved = 0; moved < 2; moved++) {
@@ -177,7 +177,7 @@ static void test_apart_notices(void **state)
     }
 }
 
-/** Other cameras of the test views, not only pictures, and other views of the same moments: when they are is all that counts. */
+/** Other cameras and images of the test views, and other views of the same times, change nothing. Only their times count. */
 static void test_apart_poses(void **state)
 {
     begin_anew(&layouts[DNERF]);
@@ -193,7 +193,7 @@ static void test_apart_poses(void **state)
     free_start(&second);
 }
 
-/** Frames that do not say how large they are: other sizes of test pictures do not become those of the others. */
+/** Where frames do not state their size, the size of test images is not taken for the others. */
 static void test_apart_sizes(void **state)
 {
     const layout *l = &layouts[NERFSTUDIO];
@@ -225,7 +225,7 @@ static void test_apart_sizes(void **state)
 
 static int n_marked;
 
-/** Put a byte order mark before a file of text. */
+/** Puts a byte order mark before a text file. */
 static int mark(const char *path, const struct stat *status, int kind, struct FTW *place)
 {
     const char *end = strrchr(path, '.');
@@ -243,7 +243,7 @@ static int mark(const char *path, const struct stat *status, int kind, struct FT
     return 0;
 }
 
-/** What an editor has put before a text means nothing. */
+/** A byte order mark, which some editors write, changes nothing. */
 static void test_marks(void **state)
 {
     static const int which[] = {DNERF, NERFSTUDIO, HYPERNERF, COLMAP_TEXT, SCENE_FILE};
@@ -297,11 +297,11 @@ static void open_range(const layout *l, int64_t begin, int64_t end, int64_t step
         expect_error(status, expected, what, "");
 }
 
-/** Moments of single pictures: those of training 1, 3, 5, 7 and of testing 0, 8, all over 8. */
+/** Timestamps of single images: training 1, 3, 5, 7 and testing 0, 8, all over 8. */
 static void test_frames_of_pictures(void **state)
 {
     begin_anew(&layouts[DNERF]);
-    open_range(&layouts[DNERF], 1, 5, 2, ADCGS_OK, NULL); /* of the moments 0 1 3 5 7 8: 1 and 5 */
+    open_range(&layouts[DNERF], 1, 5, 2, ADCGS_OK, NULL); /* of the timestamps 0 1 3 5 7 8: 1 and 5 */
     assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 2 && scene->n_views[ADCGS_SPLIT_TEST] == 0);
     assert_string_equal(scene->views[ADCGS_SPLIT_TRAIN][1].camera.name, "5");
     assert_true(scene->views[ADCGS_SPLIT_TRAIN][0].time == 0.0 && scene->duration == 0.1);
@@ -315,7 +315,7 @@ static void test_frames_of_pictures(void **state)
     open_range(&layouts[DNERF], 5, 0, 1, ADCGS_ERR_DATA, "leaves no view for training");
 }
 
-/** Frames of cameras: the step makes frames rarer, not faster. */
+/** Frames of cameras: the step reduces the number of frames, not their duration. */
 static void test_frames_of_cameras(void **state)
 {
     static const int which[] = {NEU3D, NEU3D_VIDEOS, COLMAP_VIDEOS, SCENE_FILE};
@@ -330,8 +330,10 @@ static void test_frames_of_cameras(void **state)
         assert_true(scene->n_times == 2 && train[0].time == 0.0 && train[1].time == scene->duration);
         assert_true(train[0].is_video == l->videos && train[1].frame == (l->videos ? 3 : 0));
         assert_true(l->videos || strstr(train[1].path, "0003.ppm"));
-        /* Videos are at 25 frames per second, every second one is at 12.5; pictures are said to be at 10, but a scene file's
-         * frames have times of their own, at 30. */
+        /*
+         * Videos have 25 frames per second; with every second frame, 12.5. Images have 10 by the option, but a scene file's
+         * frames have their own times, at 30.
+         */
         assert_true(fabs(scene->duration - (l->videos ? 2 / 25.0 : *l->scene ? 2 / 30.0 : 0.1)) < 1e-12);
         assert_true(adcgs_fps_value(scene->rate) == (l->videos ? 12.5 : 10));
         adcgs_scene_free(&scene);
@@ -357,7 +359,7 @@ static void test_kinds(void **state)
     begin_anew(&layouts[LLFF]);
     put_folder("sparse");
     put_model_text("sparse", CAMERAS, "%d.ppm", "7 PINHOLE 24 16 20 20 12 8\n");
-    expect_good(adcgs_scene_open(&scene, folder, NULL, &error)); /* LLFF goes first */
+    expect_good(adcgs_scene_open(&scene, folder, NULL, &error)); /* LLFF has priority */
     assert_true(scene->near_bound == 2.01);
     adcgs_scene_free(&scene);
     open_as(ADCGS_DATASET_COLMAP, ADCGS_OK, NULL);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Lenses: the model and its inverse, pinholes for them, pictures straightened, a real calibration. */
+/** \file Lenses: the model and its inverse, pinhole cameras for them, undistorted images, a real calibration. */
 #include "outside_files.h"
 
 #include "data/lens_model.h"
@@ -19,7 +19,7 @@
 #define FISHEYE {.width = 320, .height = 240, .fx = 260, .fy = 265, .cx = 165, .cy = 118, .k = {0.03, -0.02, 0.01, -0.003}, \
                  .is_fisheye = 1}
 #define SHEARED {.width = 100, .height = 80, .fx = 90, .fy = 80, .cx = 40, .cy = 45, .skew = -12}
-/* The axis of the camera lies outside of the picture, which is a part of a larger one. */
+/* The camera's axis is outside of the image, which is a crop of a larger one. */
 #define ASIDE {.width = 100, .height = 80, .fx = 300, .fy = 300, .cx = -60, .cy = 140, .k = {-0.2, 0.05}, .p = {0.001, 0}}
 
 static const adcgs_lens lenses[] = {BARREL, CUSHION, CROOKED, RATIONAL, EIGHTH, SHEARED, ASIDE, FISHEYE};
@@ -70,7 +70,7 @@ static void test_projection(void **state)
             }
 }
 
-/** There and back over the whole picture, edges included; neighbours see neighbouring directions, so there is one branch only. */
+/** Projection inverts unprojection over the whole image, edges included. Directions increase along rows: one branch only. */
 static void test_inverse(void **state)
 {
     for (size_t n = 0; n < ADCGS_COUNTOF(lenses); n++)
@@ -88,7 +88,7 @@ static void test_inverse(void **state)
         }
 }
 
-/** r - r^3 grows until r = 1/sqrt(3), where it is 2/(3 sqrt(3)). Nothing is seen further out; what is seen is the near branch. */
+/** r - r^3 grows until r = 1/sqrt(3), where it is 2/(3 sqrt(3)). Nothing is seen further out; the inverse is the near branch. */
 static void test_fold(void **state)
 {
     adcgs_lens fold = {.width = 74, .height = 10, .fx = 100, .fy = 100, .cx = 37, .cy = 5, .k = {-1.0}};
@@ -106,12 +106,12 @@ static void test_fold(void **state)
     fold.width = 80;
     fold.cx = 40;
     expect_error(adcgs_lens_pinhole(&fold, &camera, "some.json", &error), ADCGS_ERR_DATA, "some.json: ", "folds inside");
-    /* It would grow again further out: the first fold counts. */
+    /* The model would grow again further out. The first fold counts. */
     fold.k[1] = 10.0;
     fold.k[0] = -5.0;
     assert_true(adcgs_lens_unproject(&fold, 41, 5, xy) && xy[0] < 0.05);
     assert_false(adcgs_lens_unproject(&fold, 40 + 40, 5, xy));
-    /* A pole: 1/(1 - r^2) reaches every place in the picture before r is 1. */
+    /* A pole: 1/(1 - r^2) reaches every place in the image before r is 1. */
     const adcgs_lens pole = {.width = 80, .height = 10, .fx = 10, .fy = 10, .cx = 40, .cy = 5, .k = {0, 0, 0, -1.0}};
     assert_true(adcgs_lens_unproject(&pole, 80, 5, xy) && xy[0] < 1.0);
     /* Tangential terms fold too. */
@@ -119,11 +119,14 @@ static void test_fold(void **state)
     expect_error(adcgs_lens_pinhole(&bent, &camera, "x", &error), ADCGS_ERR_DATA, "x: ", "folds inside");
 }
 
-/** A circle that shows what lies behind the lens, too. The pinhole of the same focal lengths sees 60 to each side of the axis. */
+/**
+ * A circular image that also shows the scene behind the lens. The pinhole of the same focal lengths sees 60 degrees to each side
+ * of the axis.
+ */
 #define CIRCLE {.width = 400, .height = 300, .fx = 100, .fy = 101, .cx = 190, .cy = 210, .k = {0.04, -0.01, 0.002, -0.0003}, \
                 .is_fisheye = 1}
 
-/** The inverse is found up to 89.4 degrees from the axis, and nothing is seen beyond. */
+/** The inverse exists up to 89.4 degrees from the axis and not beyond. */
 static void test_angles(void **state)
 {
     const adcgs_lens circle = CIRCLE;
@@ -143,18 +146,18 @@ static void test_angles(void **state)
     assert_true(uv[0] == circle.cx && uv[1] == circle.cy);
 }
 
-/** Where the model shrinks it must be of no use: outside of the picture, or of what is left of it. */
+/** A fold of the model is an error only inside the image, or inside the part that the pinhole keeps. */
 static void test_fisheye_folds(void **state)
 {
     /* a - a^3 / 3 k grows up to a = sqrt(k). */
     adcgs_lens lens = {.width = 400, .height = 400, .fx = 100, .fy = 100, .cx = 200, .cy = 200, .is_fisheye = 1};
     adcgs_camera c = {0};
-    const double corner = atan(sqrt(6.0)); /* of what is left */
+    const double corner = atan(sqrt(6.0)); /* of the part that the pinhole keeps */
     lens.k[0] = -1.0 / (3.0 * pow(corner + 0.01, 2));
     expect_good(adcgs_lens_pinhole(&lens, &c, "x", &error));
     lens.k[0] = -1.0 / (3.0 * pow(corner - 0.01, 2));
     expect_error(adcgs_lens_pinhole(&lens, &c, "cams.json", &error), ADCGS_ERR_DATA, "cams.json: ", "folds inside");
-    lens.width = lens.height = 60; /* half of it reaches the corner of this, 42 focal lengths of 100 from the axis */
+    lens.width = lens.height = 60; /* half the fold's radius reaches this corner, 42 pixels from the axis at focal length 100 */
     lens.cx = lens.cy = 30;
     expect_good(adcgs_lens_pinhole(&lens, &c, "x", &error));
     lens.k[0] = -3.0;
@@ -182,7 +185,7 @@ static void test_nonsense(void **state)
 
 /* ---- Pinholes ---- */
 
-/** Does the lens's picture show the pinhole's place? */
+/** True if the lens's image shows the pinhole camera's pixel. */
 static int is_shown(const adcgs_lens *lens, const adcgs_camera *c, double u, double v)
 {
     double uv[2], back[2];
@@ -190,10 +193,10 @@ static int is_shown(const adcgs_lens *lens, const adcgs_camera *c, double u, dou
     reference(lens, x, y, uv);
     if (!(uv[0] >= -1e-5 && uv[1] >= -1e-5 && uv[0] <= lens->width + 1e-5 && uv[1] <= lens->height + 1e-5))
         return 0;
-    return adcgs_lens_unproject(lens, uv[0], uv[1], back) && hypot(back[0] - x, back[1] - y) < 1e-7; /* not by a fold */
+    return adcgs_lens_unproject(lens, uv[0], uv[1], back) && hypot(back[0] - x, back[1] - y) < 1e-7; /* not beyond a fold */
 }
 
-/** All corners of pixels are shown, and beyond no side a whole row or column of them is. */
+/** All corners of pixels are shown, and no side could be extended by a whole row or column. */
 static void test_coverage(void **state)
 {
     for (size_t n = 0; n < ADCGS_COUNTOF(lenses); n++) {
@@ -218,7 +221,7 @@ static void test_coverage(void **state)
     }
 }
 
-/** The largest of all rectangles, by trying all: shown[j][i] counts the covered places in a row up to there. */
+/** The area of the largest rectangle, by exhaustive search: shown[j][i] counts the covered places in a row up to there. */
 static int largest_by_trying(const adcgs_lens *lens)
 {
     enum { LOW = -40, N = 160 };
@@ -253,7 +256,7 @@ static void test_largest(void **state)
     }
 }
 
-/** Of what a circle shows, this is left. */
+/** The part of a circular image that the pinhole keeps. */
 static void test_circle(void **state)
 {
     adcgs_lens lens = CIRCLE;
@@ -261,7 +264,7 @@ static void test_circle(void **state)
     expect_good(adcgs_lens_pinhole(&lens, &c, "x", &error));
     assert_true(c.fx == 100 && c.fy == 101 && lens.width == 400);
     assert_true(c.width == 2 * floor(100 * sqrt(3)) && c.cx == floor(100 * sqrt(3))); /* 60 degrees to each side */
-    assert_true(c.height - c.cy > 90 && c.height - c.cy < floor(101 * sqrt(3))); /* below the axis the picture ends before */
+    assert_true(c.height - c.cy > 90 && c.height - c.cy < floor(101 * sqrt(3))); /* below the axis the image ends earlier */
     assert_true(c.cy == floor(101 * sqrt(3)));
     for (int j = 0; j <= c.height; j++)
         for (int i = 0; i <= c.width; i++)
@@ -283,20 +286,20 @@ static void test_flat(void **state)
     lens.k[0] = 1e-2;
     expect_good(adcgs_lens_pinhole(&lens, &c, "x", &error));
     assert_int_equal(lens.width, 60);
-    /* A shear so steep that no tenth is left. */
+    /* A shear so steep that less than a tenth is left. */
     lens = (adcgs_lens){.width = 60, .height = 40, .fx = 50, .fy = 50, .cx = 30, .cy = 20, .skew = 1000};
     expect_error(adcgs_lens_pinhole(&lens, &c, "cam.json", &error), ADCGS_ERR_DATA, "cam.json: ", "a tenth");
 }
 
-/* ---- Pictures ---- */
+/* ---- Images ---- */
 
-/** Something smooth to look at: no feature is smaller than a tenth of the focal length. */
+/** A smooth scene: no feature is smaller than a tenth of the focal length. */
 static double look(double x, double y, int channel)
 {
     return 0.5 + 0.3 * sin(20 * x + channel) * cos(17 * y - channel) + 0.1 * sin(11 * (x + y));
 }
 
-/** The picture of that through a lens. */
+/** The image of that scene through a lens. */
 static void draw(adcgs_image *image, const adcgs_lens *lens, int channels)
 {
     const double fold = adcgs_lens_fold(lens);
@@ -305,15 +308,15 @@ static void draw(adcgs_image *image, const adcgs_lens *lens, int channels)
         for (int i = 0; i < image->width; i++) {
             double xy[2];
             const int shown = adcgs_lens_invert(lens, fold, i + 0.5, j + 0.5, xy);
-            assert_true(shown || lens->is_fisheye); /* which looks behind */
+            assert_true(shown || lens->is_fisheye); /* a fisheye also sees behind itself */
             for (int c = 0; c < channels; c++)
                 image->data[(j * image->width + i) * channels + c] = shown ? (float)look(xy[0], xy[1], c) : 0.0f;
         }
 }
 
-/** The straightened picture against what the pinhole sees. */
+/** The undistorted image against the pinhole camera's view of the scene. */
 typedef struct differences {
-    double inside, mean, edge; /**< the largest inside and its root mean square; the largest in the outermost two pixels */
+    double inside, mean, edge; /**< largest and root mean square inside; largest in the outermost two pixels */
 } differences;
 
 static differences compare(adcgs_lens lens, int channels)
@@ -356,8 +359,8 @@ static adcgs_lens enlarge(adcgs_lens lens, int times)
 }
 
 /**
- * Below a grey level of 8 bits inside, two at the edge, where pixels are repeated. Errors fall with the third power of the
- * pixel's size, but at peaks, which are held to the range of their pixels, with the second.
+ * Errors are below one grey level of 8 bits inside and below two at the edge, where pixels are repeated. They fall with the third
+ * power of the pixel's size. At peaks, which are clamped to the range of their pixels, they fall with the second.
  */
 static void test_straightened(void **state)
 {
@@ -371,7 +374,10 @@ static void test_straightened(void **state)
     }
 }
 
-/** So it is of a circle, of which a pixel far from the axis sees a wider angle than the pinhole's, and of a larger one better. */
+/**
+ * The same for a circular image, whose pixels far from the axis span a wider angle than the pinhole's. A larger image has smaller
+ * errors.
+ */
 static void test_circle_straightened(void **state)
 {
     const adcgs_lens lens = enlarge((adcgs_lens)CIRCLE, 2);
@@ -382,7 +388,7 @@ static void test_circle_straightened(void **state)
     assert_true(fine.mean < d.mean / 5.0 && fine.inside < d.inside / 2.5);
 }
 
-/** Nothing is made up: values stay in the range of those around, and one colour stays that colour. */
+/** Undistortion invents nothing: values stay in the range of their surroundings, and one colour stays that colour. */
 static void test_range(void **state)
 {
     adcgs_lens lens = BARREL;
@@ -409,7 +415,7 @@ static void test_range(void **state)
     adcgs_image_free(&image);
 }
 
-/** What transparent pixels hold is not seen in those beside them. */
+/** The colours of transparent pixels do not leak into their neighbours. */
 static void test_alpha(void **state)
 {
     adcgs_lens lens = CUSHION;
@@ -450,7 +456,7 @@ static adcgs_lens read_lens(json_t *k, json_t *d)
                         .p = {cell(d, 2, 0), cell(d, 3, 0)}};
 }
 
-/** Where the pinhole camera of the published, straightened pictures sees a point. */
+/** Projects a point with the pinhole camera of the published, undistorted images. */
 static void see(const adcgs_camera *c, const double point[3], double uv[2])
 {
     const double *m = c->cam_to_world;
@@ -462,8 +468,8 @@ static void see(const adcgs_camera *c, const double point[3], double uv[2])
 }
 
 /**
- * Triangulated points through the calibration's poses (millimetres) and lens, and back from the picture as it was taken:
- * the pinhole at half the size sees them where the straightened pictures' cameras do.
+ * Projects triangulated points through the calibration's poses (millimetres) and lens, and back from the original image. The
+ * pinhole camera at half the size sees them where the published cameras do.
  */
 static void check_camera(const adcgs_scene *scene, const adcgs_camera *pinhole, json_t *all, size_t i, double *bent,
                          uint32_t *inside)
@@ -478,7 +484,7 @@ static void check_camera(const adcgs_scene *scene, const adcgs_camera *pinhole, 
         adcgs_lens_project(&lens, p[0] / p[2], p[1] / p[2], uv);
         see(pinhole, point, seen);
         if (!(p[2] > 0.0 && seen[0] >= 0.0 && seen[1] >= 0.0 && seen[0] <= pinhole->width && seen[1] <= pinhole->height))
-            continue; /* some are so far aside that the model folds before it comes to them */
+            continue; /* some points are so far off the axis that the model folds before it reaches them */
         (*inside)++;
         *bent = fmax(*bent, hypot(0.5 * uv[0] - seen[0], 0.5 * uv[1] - seen[1]));
         assert_true(adcgs_lens_unproject(&lens, uv[0], uv[1], xy));
@@ -512,8 +518,8 @@ static void test_ring(void **state)
                 cameras++;
             }
         }
-    assert_true(cameras == 21 && inside > 21 * scene->points.n * 9 / 10 && bent > 1.0); /* and the distortion is not nothing */
-    print_message("%u points seen; distortion moves them by up to %.2f pixels of 512\n", inside, bent);
+    assert_true(cameras == 21 && inside > 21 * scene->points.n * 9 / 10 && bent > 1.0); /* the distortion is more than nothing */
+    print_message("%u points visible; distortion moves them by up to %.2f pixels of 512\n", inside, bent);
     json_decref(root);
     adcgs_scene_free(&scene);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Scenes whose pictures were taken through lenses: what their files say, and the pictures that training gets. */
+/** \file Scenes whose images have lens distortion: the fields of their files, and the images for training. */
 #include "outside_files.h"
 
 #include "data/content.h"
@@ -14,7 +14,7 @@ enum { WIDTH = 96, HEIGHT = 72 };
 #define FRAME(name, more) "{\"file_path\":\"" name "\"," POSE more "}"
 #define UNSEEN FRAME("a.exr", ",\"k1\":0") "," /* the first frame is for testing */
 #define INSIDE 0.004
-#define EDGE 0.03 /* in the outermost two pixels, where the picture's last ones are repeated */
+#define EDGE 0.03 /* in the outermost two pixels, where the image's last ones are repeated */
 
 static adcgs_scene *scene;
 
@@ -29,7 +29,7 @@ static double look(double x, double y, int channel)
     return 0.5 + 0.3 * sin(9 * x + channel) * cos(8 * y - channel) + 0.1 * sin(5 * (x + y));
 }
 
-/** A picture of that, as a lens takes it. */
+/** Writes the image of that scene through a lens. */
 static void put_picture(const char *name, const adcgs_lens *lens)
 {
     const double fold = adcgs_lens_fold(lens);
@@ -45,7 +45,7 @@ static void put_picture(const char *name, const adcgs_lens *lens)
     adcgs_image_free(&image);
 }
 
-/** Mostly reduced before it is straightened, a picture is what it would be reduced afterwards. */
+/** An image reduced mostly before undistortion is close to one reduced afterwards. */
 static void check_reduced(const adcgs_scene_view *view, const float *whole, const adcgs_camera *c)
 {
     static const int divides[] = {2, 3, 4, 6, 8};
@@ -72,7 +72,7 @@ static void check_reduced(const adcgs_scene_view *view, const float *whole, cons
     }
 }
 
-/** The view's lens is this one; what is loaded is what its pinhole sees. */
+/** Expects the view to have this lens and the loaded image to be the pinhole's. */
 static void check_view(const adcgs_scene_view *view, const adcgs_lens *lens)
 {
     float *rgb;
@@ -90,12 +90,12 @@ static void check_view(const adcgs_scene_view *view, const adcgs_lens *lens)
     check_reduced(view, rgb, &c);
     const double first = ((double)rgb[0] + (double)rgb[1] + (double)rgb[c.width] + (double)rgb[c.width + 1]) / 4;
     free(rgb);
-    expect_good(adcgs_scene_load(scene, view, 2, &rgb, &small, &error)); /* straightened before it is reduced */
+    expect_good(adcgs_scene_load(scene, view, 2, &rgb, &small, &error)); /* undistorted before it is reduced */
     assert_true(small.width == (c.width + 1) / 2 && small.cx == c.cx / 2 && fabs((double)rgb[0] - first) < 1e-6);
     free(rgb);
 }
 
-/** One training view with these fields, which must mean this lens. */
+/** Expects one training view with these fields to have this lens. */
 static void check_transforms(const char *fields, adcgs_lens lens)
 {
     char json[1024];
@@ -112,7 +112,7 @@ static void check_transforms(const char *fields, adcgs_lens lens)
 
 #define TAKEN .width = WIDTH, .height = HEIGHT, .fx = 80, .fy = 82, .cx = 50, .cy = 34
 
-/** Every model of nerfstudio's that has a pinhole or a fisheye in it, and COLMAP's largest. */
+/** Every model of nerfstudio that contains a pinhole or a fisheye, and COLMAP's largest. */
 static void test_models(void **state)
 {
     check_transforms("\"k1\":-0.1", (adcgs_lens){TAKEN, .k = {-0.1}});
@@ -132,7 +132,7 @@ static void test_models(void **state)
     check_transforms("\"camera_model\":\"SIMPLE_RADIAL_FISHEYE\"", (adcgs_lens){TAKEN, .is_fisheye = 1});
 }
 
-/** Lenses for all frames, of single frames, and none; w and h are of the picture as taken, or are the picture's own. */
+/** Lenses for all frames, for single frames, and none. w and h describe the original image, or default to its size. */
 static void test_frames(void **state)
 {
     const adcgs_lens common = {TAKEN, .k = {-0.15, 0.02}}, own = {.width = WIDTH, .height = HEIGHT, .fx = 90, .fy = 90, .cx = 48,
@@ -161,7 +161,7 @@ static void test_frames(void **state)
     "[50,34],\"image_size\":[96,72],\"pixel_aspect_ratio\":1.05," more "}"
 #define BENT "\"skew\":2.5,\"radial_distortion\":[-0.12,0.05,-0.01]"
 
-/** Where the lens sees a point to the right of EAST, something moves: so it does in the straightened view, to a pixel. */
+/** Motion masks are undistorted: the region to the right of EAST moves in the undistorted view, to within a pixel. */
 #define EAST 0.1
 static void test_moving(void **state)
 {
@@ -194,7 +194,7 @@ static void test_moving(void **state)
     adcgs_scene_free(&scene);
 }
 
-/** Of the taken picture at 1/divide of full size. */
+/** The lens of the original image at 1/divide of full size. */
 static adcgs_lens hypernerf_lens(int divide)
 {
     return (adcgs_lens){.width = WIDTH / divide, .height = HEIGHT / divide, .fx = 80.0 / divide, .fy = 80.0 * 1.05 / divide,
@@ -216,7 +216,7 @@ static void put_hypernerf(void)
 static void test_hypernerf(void **state)
 {
     put_hypernerf();
-    for (int divide = 2; divide >= 1; divide--) { /* the larger pictures, once they are there, are taken */
+    for (int divide = 2; divide >= 1; divide--) { /* the larger images are used as soon as they exist */
         const adcgs_lens bent = hypernerf_lens(divide);
         char name[64];
         snprintf(name, sizeof name, "h/rgb/%dx", divide);
@@ -238,7 +238,7 @@ static void test_hypernerf(void **state)
     }
 }
 
-/** Skew and the tangential pair as HyperNeRF's cameras use them, worked out by hand for x = 0.5, y = 0.25. */
+/** Skew and the tangential pair as in HyperNeRF's cameras, by hand for x = 0.5, y = 0.25. */
 static void test_hypernerf_terms(void **state)
 {
     expect_good(adcgs_scene_open(&scene, in("h"), NULL, &error));
@@ -251,7 +251,7 @@ static void test_hypernerf_terms(void **state)
     adcgs_scene_free(&scene);
 }
 
-/* Scenes that differ by how a lens bends alone are not the same. */
+/* Scenes that differ only in lens distortion are different. */
 static void test_outline(void **state)
 {
     adcgs_scene_view view = {.camera = {.width = 8, .height = 8, .fx = 8, .fy = 8},

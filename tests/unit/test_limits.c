@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What a stream can make a decoder spend: streams of a few hundred bytes that
- * claim all that a level allows are decoded within their memory and time, and
- * one more of anything is refused before anything is taken for it. And every
- * allocation of the decoder is made to fail once.
+ * The cost that a stream can cause in a decoder. Streams of a few hundred bytes that use all of a level's limits are decoded
+ * within their memory and time. One unit more of anything is refused before any allocation for it. Every allocation of the
+ * decoder fails once.
  */
 #include "random_model.h"
 #include "stream_edit.h"
@@ -25,20 +24,20 @@
 
 #include <cmocka.h>
 
-/* Besides models, payloads and weights: contexts of the coders, headers of blocks, the table of networks. */
+/* Memory in addition to models, payloads and weights: contexts of the coders, headers of blocks, the table of networks. */
 #define SLACK ((uint64_t)1 << 20)
 #define SECONDS_MOST 2.0
 
 /* ---- Streams whose contents cost no bytes ---- */
 
-/** What a stream of nothing is made of: every weight and every value 0, anchors that fill a cube. */
+/** The parameters of a zero stream: every weight and value is 0, and anchors fill a cube. */
 typedef struct nothing {
     adcgs_params params;
     uint32_t segments, anchors;
     int depth;
     int role, layers, width; /**< hidden layers of one network, of this width; the others have none */
     uint32_t cameras;
-    int predicted; /**< segments but the first keep all anchors of the one before */
+    int predicted; /**< segments after the first predict all anchors from the one before */
 } nothing;
 
 static const nothing least = { .params = { .k = 1, .n_fv = 1, .chunks = 1 }, .segments = 1, .anchors = 1 };
@@ -58,7 +57,7 @@ static void zero_net(adcgs_net *net, const adcgs_params *params, int role, int l
     }
 }
 
-/** Anchor i in the voxel whose Morton code is i. */
+/** Puts anchor i into the voxel with Morton code i. */
 static void fill_cube(adcgs_model *m)
 {
     for (uint32_t i = 0; i < m->n; i++)
@@ -116,7 +115,7 @@ static void set_level(uint8_t *stream, size_t size, int level)
     adcgs_repair_stream(stream, size, 0);
 }
 
-/** The stream of nothing, whatever level it needs, made to say that it is of level 1. */
+/** Writes the zero stream for the level that it needs, then changes its level to 1. */
 static void make_bytes(adcgs_buffer *bytes, const nothing *what)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -129,7 +128,7 @@ static void make_bytes(adcgs_buffer *bytes, const nothing *what)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/* ---- What they cost ---- */
+/* ---- The cost of zero streams ---- */
 
 typedef struct cost {
     adcgs_status status;
@@ -156,12 +155,12 @@ static cost decode(const uint8_t *data, size_t size)
     return c;
 }
 
-/** The bound that the specification's annex states, for streams of one layer of networks in memory at a time. */
+/** The bound of the specification's annex, for streams with one layer of networks in memory at a time. */
 static uint64_t bound_of(const nothing *what, uint64_t weights, uint64_t longest_payload)
 {
     const adcgs_nets_cost nets = { weights, 0 };
     const adcgs_cost each = adcgs_segment_cost(&what->params, what->anchors, what->depth, &nets);
-    const uint64_t models = what->segments + (what->predicted ? 2U : 0U); /* what is kept, and what is new, before they join */
+    const uint64_t models = what->segments + (what->predicted ? 2U : 0U); /* kept and new parts, before they join */
     return models * each.bytes + 128 * (uint64_t)what->anchors + 16 * weights + 3 * longest_payload
            + 5 * (uint64_t)what->cameras * 50 + SLACK;
 }
@@ -172,7 +171,7 @@ static uint64_t bound_of(const nothing *what, uint64_t weights, uint64_t longest
 #endif
 #endif
 
-/** Whether the build or the machine is too slow for its times to mean anything. */
+/** True if the build or the machine is too slow for meaningful times. */
 static int is_slow(void)
 {
 #if !defined(__OPTIMIZE__) || defined(SANITIZED) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -182,7 +181,7 @@ static int is_slow(void)
 #endif
 }
 
-/** A stream at the edge is decoded within memory and time; the one behind the edge is refused, having taken next to nothing. */
+/** A stream at the limit is decoded within memory and time. One beyond the limit is refused almost without allocations. */
 static void check_edge(const char *name, const nothing *inside, const nothing *outside, uint64_t weights, const char *refusal)
 {
     adcgs_buffer bytes;
@@ -303,7 +302,7 @@ static void test_cameras(void **state)
     check_edge("cameras", &in, &out, 0, "payload");
 }
 
-/** Copies of the only NETW in front of the last chunk: it repeats what is known, and its weights are decoded each time. */
+/** Inserts copies of the only NETW before the last chunk. They repeat known data, but their weights are decoded each time. */
 static void repeat_networks(adcgs_buffer *out, const adcgs_buffer *in, int times)
 {
     adcgs_found_chunk c, netw = { 0 }, end = { 0 };
@@ -342,7 +341,7 @@ static void test_repeated_networks(void **state)
     adcgs_buffer_clear(&often);
 }
 
-/** A NETW with the networks from first_id on, each E_fv without inputs: two biases. */
+/** A NETW with the networks from first_id on, each an E_fv without inputs: two biases. */
 static void write_tiny_networks(adcgs_buffer *out, const adcgs_net *net, uint32_t first_id, uint32_t n)
 {
     const adcgs_net *nets[ADCGS_ROLES];
@@ -386,7 +385,7 @@ static void test_networks(void **state)
     assert_non_null(strstr(out.text, "networks"));
 }
 
-/* ---- Allocations that fail ---- */
+/* ---- Failing allocations ---- */
 
 void *__real_calloc(size_t count, size_t size);
 void *__real_realloc(void *old, size_t size);
@@ -397,10 +396,10 @@ void *__wrap_realloc(void *old, size_t size);
 void __wrap_free(void *block);
 int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void *(*function)(void *), void *arg);
 
-/* Allocations that still succeed; below 0 nothing fails. Blocks in use. */
+/* Number of allocations that still succeed (below 0: nothing fails); blocks in use. */
 static atomic_long left = -1;
 static atomic_long blocks = 0;
-/* Whether a task of a pool is under way, and what tasks asked of the allocator: it may be one that knows no threads. */
+/* True while a task of a pool runs; number of allocator calls by tasks. The allocator need not be thread-safe. */
 static atomic_int in_task = 0, task_calls = 0;
 /* Threads that were not started. */
 static atomic_int denied = 0;
@@ -444,8 +443,8 @@ static const adcgs_camera camera = { .width = 33, .height = 20, .fx = 30, .fy = 
                                      .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4 } };
 
 /**
- * Open, look at two times, close, with allocation n failing, or the start of a thread, which is no failure. Returns whether one
- * did.
+ * Opens, renders at two times and closes while allocation n fails, or the start of a thread, which is no failure. Returns true if
+ * an allocation has failed.
  */
 static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
 {
@@ -472,7 +471,7 @@ static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
         fail_msg("allocation %ld fails: status %d, %s", n, (int)status, error.text);
     assert_int_equal(error.status, status);
     assert_true(!is_short || error.text[0] != 0);
-    if (d && failed) /* it goes on as if nothing had happened */
+    if (d && failed) /* it continues as if nothing had happened */
         assert_int_equal(adcgs_render(d, &camera, 0, &frame, &error), ADCGS_OK);
     adcgs_close(&d);
     assert_int_equal(atomic_load(&blocks), before);
@@ -490,7 +489,7 @@ static void write_two_segments(adcgs_buffer *bytes)
     params.n_fg = params.chunks = 2;
     assert_int_equal(adcgs_random_stream(&stream, &params, 2, 130, 4, &seed, NULL), ADCGS_OK);
     stream.slice_log2 = ADCGS_SLICE_LOG2_MIN;
-    assert_true(stream.segments[1].predicted); /* by this seed */
+    assert_true(stream.segments[1].predicted); /* with this seed */
     adcgs_buffer_init(bytes);
     assert_int_equal(adcgs_stream_write(&stream, bytes, NULL), ADCGS_OK);
     adcgs_stream_clear(&stream, NULL);
@@ -505,7 +504,7 @@ static void run_tasks(void *tasks, adcgs_task_fn task, void *work, int n)
     *(int *)tasks += n;
 }
 
-/** Whoever lends threads may have an allocator for one alone. */
+/** A caller that lends threads may have an allocator for a single thread only. */
 static void test_tasks_allocate_nothing(void **state)
 {
     float rgb[33 * 20 * 3];
@@ -544,13 +543,13 @@ static void test_failing_allocations(void **state)
     adcgs_buffer_clear(&bytes);
 }
 
-/** A pool has as many threads as start. */
+/** A pool has as many threads as could be started. */
 static void test_no_threads(void **state)
 {
     adcgs_pool *pool = NULL;
     (void)state;
     for (int started = 0; started < 3; started++) {
-        atomic_store(&left, 2 + started); /* the pool and its list of threads are there */
+        atomic_store(&left, 2 + started); /* the pool and its list of threads are allocated */
         assert_int_equal(adcgs_pool_create(&pool, 4, NULL), ADCGS_OK);
         atomic_store(&left, -1);
         assert_int_equal(adcgs_pool_threads(pool), 1 + started);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What --live is made of: lengths of Y4M frames, segments of footage that comes in any order, with gaps or not at all, files that
- * grow, and streams that are put in order when they end.
+ * The parts of --live: lengths of Y4M frames; segments of footage that comes in any order, with gaps or not at all; growing
+ * files; streams that are put in order at their end.
  */
 #define _POSIX_C_SOURCE 200809L
 #include "random_model.h"
@@ -109,7 +109,7 @@ static void start_again(void)
     interrupted = 0;
 }
 
-/** Two cameras of ten frames a second, the second half a frame later. */
+/** Two cameras of ten frames a second; the second is half a frame later. */
 static int set_up(void **state)
 {
     static const char text[] =
@@ -141,7 +141,7 @@ static adcgs_live *open_live(double seconds, int unbounded)
     return live;
 }
 
-/** The next segment spans this, and shows so many views, times within it in ascending order for each camera. */
+/** Expects a segment of this span with so many views, whose times ascend for each camera. */
 static void expect_segment(adcgs_live *live, adcgs_live_segment *s, double begin, double end, uint32_t views, uint32_t moments)
 {
     assert_int_equal(adcgs_live_next(live, s, &error), ADCGS_OK);
@@ -167,7 +167,7 @@ static void expect_over(adcgs_live *live, adcgs_live_segment *s)
     assert_null(s->scene);
 }
 
-/** Moments at 0, 0.05, .., 1.15; each picture may come before the one in front of it. Views at a cut are in both segments. */
+/** Timestamps 0, 0.05, .., 1.15. Each image may come before its predecessor. Views at a cut are in both segments. */
 static void test_segments(void **state)
 {
     (void)state;
@@ -189,7 +189,7 @@ static void test_segments(void **state)
     }
 }
 
-/** Frames that never come, one whose file is no picture, and a camera that ends before. */
+/** Frames that never come, one whose file is no image, and a camera that ends earlier. */
 static void test_gaps(void **state)
 {
     adcgs_live_segment s = { .scene = NULL };
@@ -219,8 +219,8 @@ static void test_gaps(void **state)
 }
 
 /**
- * Footage that a stream goes on with: from behind its last segment; anew where that was cut short, unless it was cut otherwise.
- * What comes before may be gone.
+ * Footage that continues a stream begins behind its last segment. If that segment was cut short, it begins again at its start,
+ * except if the stream was cut elsewhere. Earlier footage may be gone.
  */
 static void test_going_on(void **state)
 {
@@ -255,7 +255,7 @@ static void test_going_on(void **state)
     }
 }
 
-/** An interrupt is an end; one moment is too little; where there is no scene, and what cannot be one. */
+/** An interrupt is an end. A single time makes no segment. A missing scene and an unusable scene are errors. */
 static void test_ends(void **state)
 {
     adcgs_live_segment s = { .scene = NULL };
@@ -266,7 +266,7 @@ static void test_ends(void **state)
     adcgs_live *live = open_live(0.5, 0);
     expect_segment(live, &s, 0, 0.5, 6 + 5, 11);
     interrupted = 2;
-    assert_int_equal(adcgs_live_next(live, &s, &error), ADCGS_OK); /* what was seen behind it may make a segment, or not */
+    assert_int_equal(adcgs_live_next(live, &s, &error), ADCGS_OK); /* views seen behind the cut may make a segment, or not */
     if (s.scene)
         expect_over(live, &s);
     adcgs_live_close(&live);
@@ -291,7 +291,7 @@ static size_t size_of(const char *path)
     return stat(path, &s) ? 0 : (size_t)s.st_size;
 }
 
-/** It appears with its first piece, has each at once, and stays; without one what was there before does. */
+/** A growing file replaces the old one with its first piece and holds each piece at once. Without a piece the old file stays. */
 static void test_growing(void **state)
 {
     adcgs_growing g;
@@ -310,7 +310,7 @@ static void test_growing(void **state)
     adcgs_growing_close(&g);
     adcgs_growing_close(&g);
     assert_int_equal(size_of(path), 30);
-    for (int shown = 0; shown < 2; shown++) { /* hidden pieces show with the first that is not */
+    for (int shown = 0; shown < 2; shown++) { /* hidden pieces appear with the first visible one */
         assert_int_equal(adcgs_growing_open(&g, path, &error), ADCGS_OK);
         g.is_hidden = 1;
         assert_int_equal(adcgs_growing_append(&g, "01234", 5, &error), ADCGS_OK);
@@ -333,7 +333,7 @@ static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
     return adcgs_file_read_at(user, offset, buffer, bytes);
 }
 
-/** A stream that grew, and the HEAD that says how long it has become. */
+/** A stream that grew, and the HEAD with its final length. */
 static void grow(adcgs_stream *s, adcgs_buffer *bytes, adcgs_buffer *head, size_t ends[SEGMENTS])
 {
     adcgs_grow *grow;
@@ -356,7 +356,7 @@ static void grow(adcgs_stream *s, adcgs_buffer *bytes, adcgs_buffer *head, size_
     adcgs_grow_free(&grow);
 }
 
-/** Settled it is a stream like any other, as long, with the same models, and those of its index, at a lower level. */
+/** A settled stream is a normal stream of the same duration and models, with an index, at a lower level. */
 static void test_settle(void **state)
 {
     adcgs_stream s;
@@ -385,7 +385,7 @@ static void test_settle(void **state)
         assert_memory_equal(found, expected, 16);
     }
     adcgs_close(&d);
-    for (size_t cut = 0; cut < bytes.size; cut += 97) { /* what ends early is no such stream */
+    for (size_t cut = 0; cut < bytes.size; cut += 97) { /* a stream that ends early cannot be settled */
         FILE *part = tmpfile();
         assert_true(part && fwrite(bytes.data, 1, cut, part) == cut && !fseek(part, 0, SEEK_SET));
         assert_int_equal(adcgs_encode_settle(to, part, head.data, head.size, "x", &error), ADCGS_ERR_DATA);
@@ -400,7 +400,7 @@ static void test_settle(void **state)
     adcgs_buffer_clear(&head);
 }
 
-/** Of a stream whose bytes are right up to `right`: the segments that are whole, each as it was. */
+/** Expects, from a stream whose bytes are right up to `right`, its whole segments, unchanged. */
 static void expect_past(const adcgs_stream *s, const uint8_t *data, size_t n, size_t right, const size_t *ends)
 {
     const char *path = in_folder("past", 0, 0);
@@ -419,7 +419,7 @@ static void expect_past(const adcgs_stream *s, const uint8_t *data, size_t n, si
         assert_true(model.time_start == s->segments[found].time_start && model.predicted == s->segments[found].predicted);
         adcgs_model_clear(&model, NULL);
     }
-    assert_true(found >= whole && found <= whole + 1); /* the digest behind a segment says nothing of it */
+    assert_true(found >= whole && found <= whole + 1); /* a segment is whole even if the digest behind it is not */
     assert_int_equal(past.fault.status != ADCGS_OK, right < n);
     assert_int_equal(adcgs_past_next(&past, &model, &error), ADCGS_OK);
     assert_int_equal(model.n, 0);
@@ -427,7 +427,7 @@ static void expect_past(const adcgs_stream *s, const uint8_t *data, size_t n, si
     unlink(path);
 }
 
-/** Cut off, and damaged, here and there. */
+/** Cut off, and damaged, at many places. */
 static void test_past(void **state)
 {
     adcgs_stream s;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The training loss against a direct evaluation in double with a
- * two-dimensional window, its gradient against central differences of that,
- * and the same bits at every CPU level and thread count.
+ * The training loss against a direct evaluation in double with a two-dimensional window, its gradient against central differences
+ * of that, and the same bits at every CPU level and thread count.
  */
 #include "grad/loss.h"
 
@@ -17,7 +16,7 @@
 #define WEIGHT 0.2
 #define SQUARE 0.6
 
-/* An error without SSIM's share. */
+/* The error of a value, without SSIM. */
 static double error_of(double e)
 {
     return (1 - SQUARE) * fabs(e) + SQUARE * e * e / 0.2;
@@ -61,7 +60,7 @@ static adcgs_loss_value reference(const double *x, const double *y, int w, int h
     return v;
 }
 
-/* Change of the loss when value i moves by +-e: only what is within the window can change. */
+/* Change of the loss when value i moves by +-e: only pixels within the window can change. */
 static double slope(double *x, const double *y, int w, int h, int i)
 {
     const double e = 1e-5, keep = x[i];
@@ -84,7 +83,7 @@ typedef struct pictures {
     double *dx, *dy;
 } pictures;
 
-/* Two related pictures; x differs from y everywhere by more than the step of the differences. */
+/* Two related images; x differs from y everywhere by more than the step of the differences. */
 static pictures make(int w, int h)
 {
     const size_t n = 3 * (size_t)w * (size_t)h;
@@ -122,7 +121,7 @@ static adcgs_loss_value run(adcgs_cpu_level cpu, int threads, pictures *p, float
     assert_int_equal(adcgs_pool_create(&pool, threads, NULL), ADCGS_OK);
     assert_int_equal(adcgs_loss_create(&loss, cpu, pool, NULL), ADCGS_OK);
     const adcgs_loss_shares shares = { weight, (float)SQUARE };
-    for (int twice = 0; twice < 2; twice++) /* the second run meets a used workspace */
+    for (int twice = 0; twice < 2; twice++) /* the second run uses a used workspace */
         assert_int_equal(adcgs_loss_image(loss, p->x, p->y, p->w, p->h, &shares, p->grad, &value, NULL), ADCGS_OK);
     adcgs_loss_free(&loss);
     assert_null(loss);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Masks as other people save them: in alpha, in colours, in both, of every depth. */
+/** \file Masks from other programs: in alpha, in colours, in both, of every depth. */
 #include "opened_scene.h"
 
 #include "data/mask.h"
@@ -47,7 +47,7 @@ static void put_scene(const char *mask)
     put_text("transforms.json", text);
 }
 
-/** How many columns of the left are hidden; all rows are alike. */
+/** Number of hidden columns on the left; all rows are equal. */
 static int hidden_columns(void)
 {
     float *rgb;
@@ -73,12 +73,12 @@ static void test_kinds(void **state)
         {1, {0, 1, 1}, {0, 0, 0}, 0, W / 2},
         {3, {0, 1, 1}, {0, 0, 0}, 0, W / 2},
         {3, {0, 0.01f, 1}, {0, 0, 0}, 0, W / 2},        /* any colour but black counts */
-        {4, {0, 1, 1}, {1, 1, 1}, 0, W / 2},            /* alpha says nothing */
-        {4, {0, 1, 1}, {0, 0, 0}, 0, W / 2},            /* nor does it here */
+        {4, {0, 1, 1}, {1, 1, 1}, 0, W / 2},            /* alpha is constant and ignored */
+        {4, {0, 1, 1}, {0, 0, 0}, 0, W / 2},            /* here too */
         {4, {1, 1, 1}, {0, 1, 1}, 0, W / 2},            /* white paint */
-        {4, {0.3f, 0.6f, 0.1f}, {0, 1, 0.5f}, 3, W / 2}, /* something cut out */
-        {4, {0, 0, 0}, {0, 1, 1}, 0, W / 2},            /* black paint: it tells no pixel from another */
-        {4, {0, 1, 1}, {0, 1, 0.2f}, 3, W / 2},         /* both say the same */
+        {4, {0.3f, 0.6f, 0.1f}, {0, 1, 0.5f}, 3, W / 2}, /* an object that was cut out */
+        {4, {0, 0, 0}, {0, 1, 1}, 0, W / 2},            /* black paint, the same in all pixels */
+        {4, {0, 1, 1}, {0, 1, 0.2f}, 3, W / 2},         /* both agree */
         {2, {1, 1, 1}, {0, 1, 1}, 0, W / 2},
         {2, {0, 1, 1}, {1, 1, 1}, 0, W / 2},
         {4, {1, 1, 1}, {1, 1, 1}, 0, 0},
@@ -93,7 +93,9 @@ static void test_kinds(void **state)
     }
 }
 
-/** Colours and alpha that contradict each other are refused, by name and with both, before training: of test views, too. */
+/**
+ * Colours and alpha that contradict each other are an error before training, by name and with both shares; for test views, too.
+ */
 static void test_both(void **state)
 {
     static const paint colours[] = {{0, 1, 0}, {1, 0, 0}, {1, 1, 0}}, alphas[] = {{0, 1, 1}, {0, 1, 1}, {0, 1, 1}};

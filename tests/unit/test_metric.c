@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file PSNR, SSIM and MS-SSIM against slow direct references; boxes and the parts of pictures that they cover. */
+/** \file PSNR, SSIM and MS-SSIM against slow direct references; boxes and the parts of images that they cover. */
 #include "metric/crop.h"
 #include "metric/detail.h"
 #include "metric/metric.h"
@@ -91,7 +91,7 @@ static double reference_ms_ssim(const float *a, const float *b, int width, int h
     for (int c = 0; c < 3; c++) {
         double product = 1;
         for (int scale = 0; scale < scales; scale++) {
-            /* A pixel of a scale is the mean of the box of the first scale that it stands for. */
+            /* A pixel of a scale is the mean of its box of the first scale. */
             const int box = 1 << scale, w = (width + box - 1) / box, h = (height + box - 1) / box;
             double *p[2] = {calloc((size_t)(w * h), sizeof(double)), calloc((size_t)(w * h), sizeof(double))}, sum = 0;
             for (int y = 0; y < h * box; y++)
@@ -166,7 +166,7 @@ static void test_ms_ssim(void **state)
 }
 
 /**
- * A grey picture against one with its contrast turned round: structure is negative and counts as 0. Constant pictures differ in
+ * A grey image against one with inverted contrast: the structure term is negative and counts as 0. Constant images differ in
  * luminance at the last scale alone.
  */
 static void test_ms_ssim_values(void **state)
@@ -199,7 +199,7 @@ static double fitted_psnr(const float *a, const float *b, size_t n)
     return adcgs_psnr(fitted, b, 3 * n);
 }
 
-/** A picture of another exposure is all there; what a line cannot tell stays, and what is not known does not count. */
+/** An image with another exposure has no error after the fit. Nonlinear errors stay, and unknown pixels do not count. */
 static void test_fitted(void **state)
 {
     enum { N = 50 };
@@ -256,19 +256,19 @@ static void expect_rectangle(const adcgs_box *box, const adcgs_camera *c, int le
 static void test_rectangle(void **state)
 {
     int r[4];
-    /* The face at z = 4 covers x 30 +- 10 and y 20 +- 12.5, the one behind it less. */
+    /* The face at z = 4 covers x 30 +- 10 and y 20 +- 12.5, the face behind it less. */
     expect_rectangle(&(adcgs_box){{-1, -1, 4}, {1, 1, 9}}, &camera, 20, 7, 40, 33);
     expect_rectangle(&(adcgs_box){{-9, -1, 4}, {1, 9, 9}}, &camera, 0, 7, 40, 48);
     expect_rectangle(&(adcgs_box){{0, 0, 4}, {1e-9, 1e-9, 4.1}}, &camera, 30, 20, 31, 21);
-    expect_rectangle(&(adcgs_box){{-1, -1, -1}, {1, 1, 9}}, &camera, 0, 0, 64, 48);   /* round the camera */
-    expect_rectangle(&(adcgs_box){{2, -1, -9}, {3, 1, 10}}, &camera, 38, 0, 64, 48);  /* from beside it to far ahead */
+    expect_rectangle(&(adcgs_box){{-1, -1, -1}, {1, 1, 9}}, &camera, 0, 0, 64, 48);   /* around the camera */
+    expect_rectangle(&(adcgs_box){{2, -1, -9}, {3, 1, 10}}, &camera, 38, 0, 64, 48);  /* from the camera's side to far ahead */
     assert_false(adcgs_box_rectangle(&(adcgs_box){{-1, -1, -9}, {1, 1, -1}}, &camera, r));   /* behind */
     assert_false(adcgs_box_rectangle(&(adcgs_box){{-1, -1, -1}, {1, 1, 0.09}}, &camera, r)); /* nearer than the near plane */
     assert_false(adcgs_box_rectangle(&(adcgs_box){{9, -1, 4}, {10, 1, 5}}, &camera, r));     /* to the right */
     assert_false(adcgs_box_rectangle(&(adcgs_box){{-1, -9, 4}, {1, -8, 5}}, &camera, r));    /* above */
 }
 
-/** Bounds of where the points of a grid inside the box fall, and the depth of the nearest. */
+/** Bounds of the projected points of a grid inside the box, and the depth of the nearest. */
 static double project_grid(const adcgs_box *box, const adcgs_camera *c, double bounds[4])
 {
     const double *m = c->cam_to_world;
@@ -297,7 +297,7 @@ static double clip(double x, double most)
     return fmin(fmax(x, 0), most);
 }
 
-/** Whatever the pose: the rectangle holds all that the grid shows of the box, and where the box is far enough, hardly more. */
+/** For any pose, the rectangle holds all visible points of the grid in the box. If the box is far enough it holds hardly more. */
 static void test_any_box(void **state)
 {
     int shown = 0;
@@ -328,7 +328,7 @@ static void test_any_box(void **state)
     assert_true(shown > 50);
 }
 
-/** Fences by hand: x from 0 to 100 in no order, y from -1000 to 0 with one stray point, z the same for all. */
+/** Quartile fences by hand: x from 0 to 100 in mixed order, y from -1000 to 0 with one stray point, z the same for all. */
 static void test_box_of_points(void **state)
 {
     static double position[101][3];
@@ -361,7 +361,7 @@ static void test_box_of_points(void **state)
     assert_non_null(strstr(error.text, "scene: the scene has no points"));
 }
 
-/** Outside of the rectangle nothing counts; inside it the figures are those of the pictures cut out. */
+/** Pixels outside of the rectangle do not count. Inside, the figures equal those of the cropped images. */
 static void test_crop(void **state)
 {
     enum { W = 64, H = 48 };
@@ -392,9 +392,9 @@ static void test_crop(void **state)
     assert_false(again.visible);
 }
 
-/* ---- How much there is to see ---- */
+/* ---- Amount of detail ---- */
 
-/** Values of a picture that are alike in all channels. */
+/** Sets values of an image that are equal in all channels. */
 static void grey(float *picture, int n, float (*value)(int))
 {
     for (int i = 0; i < n; i++)
@@ -408,7 +408,7 @@ static float shade(int i)
     return 0.2f + 0.6f * (float)(i % WIDE) / WIDE;
 }
 
-/** Pixels beside each other differ by 20 and by 10 levels, and so do details of the finest scale from 0. */
+/** Neighbouring pixels differ by 20 levels here and by 10 below. So do details of the finest scale from 0. */
 static float strong_stripes(int i)
 {
     return 0.5f + (i % WIDE % 2 ? 20.0f : 0.0f) / 255;
@@ -419,7 +419,7 @@ static float faint_stripes(int i)
     return 0.5f + (i % WIDE % 2 ? 10.0f : 0.0f) / 255;
 }
 
-/** Two halves, of which the edge lies in the middle of the coarsest scale alone. */
+/** Two halves, whose edge lies in the middle of the coarsest scale alone. */
 static float two_halves(int i)
 {
     return i % 32 < 16 ? 0.2f : 0.8f;
@@ -444,7 +444,7 @@ static void test_detail(void **state)
     assert_int_equal(details_of(two_halves, 32, 32), 1);
     assert_in_range(details_of(shade, WIDE, HIGH), 1, 60);
     for (int i = 0; i < 12; i++)
-        gap[i] = i % 4 ? 0.5f : (float)NAN; /* a masked pixel is no detail */
+        gap[i] = i % 4 ? 0.5f : (float)NAN; /* a masked pixel has no detail */
     assert_int_equal(adcgs_detail(gap, 2, 2, &n, NULL), ADCGS_OK);
     assert_int_equal(n, 0);
     assert_int_equal(adcgs_detail(gap, 1, 4, &n, NULL), ADCGS_OK);

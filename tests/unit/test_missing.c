@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where light is missing: lamps in the dark, of which a model knows nothing, seen by three cameras or by two of them. */
+/** \file Missing light: lamps in the dark that a model does not have, seen by three cameras or by two of them. */
 #include "outside_files.h"
 
 #include "data/scene.h"
@@ -20,7 +20,7 @@ static uint8_t black[POINTS][3];
 static adcgs_scene scene = { .views = { views }, .n_views = { CAMERAS }, .n_times = 1, .rate = { 1, 1 },
                               .points = { .n = POINTS, .coloured = 1 } };
 
-/** Lamps as on a wall that bulges, not quite in rows. All cameras see those of the middle, those of the left but two. */
+/** Lamps as on a bulging wall, not quite in rows. All cameras see those in the middle; only two see those on the left. */
 static void lamp_at(int cluster, int i, double x[3])
 {
     const int a = i % ACROSS, b = i / ACROSS;
@@ -73,7 +73,7 @@ static int remove_scene(void **state)
     return remove_folder(state);
 }
 
-/** Lamps are found where they are, by three cameras or by two, and nothing is found nearer to the cameras. */
+/** Lamps are found in their places, by three cameras or by two. Nothing is found nearer to the cameras. */
 static void lamps_are_found_where_they_are(void **state)
 {
     enum { MOST = 512 };
@@ -99,7 +99,7 @@ static void lamps_are_found_where_they_are(void **state)
     }
     for (uint32_t i = 0; i < n; i++)
         beside += fabs(t->origin[2] + t->scale * (double)places[i].x[2] - 3) > 0.4;
-    print_message("%u places, %u of them beside; of %d lamps %u by three cameras, %u by two\n", n, beside, LAMPS, found[0],
+    print_message("%u places, %u of them off; found of %d lamps: %u by three cameras, %u by two\n", n, beside, LAMPS, found[0],
                   found[1]);
     assert_int_equal(found[0], LAMPS);
     assert_int_equal(found[1], LAMPS);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Models of COLMAP as other people make them: far from the origin, without second lines, several of them. */
+/** \file COLMAP models from other users: far from the origin, without second lines, several of them. */
 #include "layout_files.h"
 #include "opened_scene.h"
 
@@ -52,7 +52,7 @@ static void put_model_at(const double place[3], int n)
     free(text);
 }
 
-/** Points of the start, in the units of the scene that is open. */
+/** Points of the start, in the units of the open scene. */
 static void start(adcgs_start_points *points)
 {
     adcgs_train_config config;
@@ -62,7 +62,9 @@ static void start(adcgs_start_points *points)
     expect_good(adcgs_start_points_find(points, scene, &config, &none, &error));
 }
 
-/** Cameras and points keep their places to each other, to a tenth of a millimetre, wherever they are: from files to the start. */
+/**
+ * From the files to the start, cameras and points keep their relative places to a tenth of a millimetre, anywhere in the world.
+ */
 static void test_far(void **state)
 {
     adcgs_start_points near, far;
@@ -91,7 +93,7 @@ static void test_far(void **state)
 
 /* ---- Lines of images ---- */
 
-/** Put images.txt with a second line behind the line of each image, and with such ends of lines. */
+/** Writes images.txt with a second line behind the line of each image, and with these line ends. */
 static void put_lines(const char *second, const char *end, int last_second)
 {
     char *text = malloc(65536);
@@ -119,7 +121,7 @@ static void expect_nine(void)
             expect_pose(&scene->views[s][v], atoi(scene->views[s][v].camera.name), 1.0, 1e-12);
 }
 
-/** No image is skipped, whatever stands in the place of its list of points, and however lines end. */
+/** No image is skipped, for any content in the place of its list of points and for any line ends. */
 static void test_lines(void **state)
 {
     static const char *const ends[] = {"\n", "\r\n", "\r", "\r\r\n"};
@@ -139,7 +141,7 @@ static void test_lines(void **state)
             for (int last = 0; last < 2; last++) {
                 put_lines(seconds[i], ends[e], last);
                 expect_nine();
-                assert_int_equal(scene->points.n, 2); /* the second is seen by one alone */
+                assert_int_equal(scene->points.n, 2); /* the second is seen by one image only */
             }
     }
     for (size_t i = 0; i + 12 < sizeof longer; i += 12)
@@ -161,7 +163,7 @@ static void test_bad_lines(void **state)
 
 /* ---- Several models ---- */
 
-/** A line about the scene that says both. */
+/** Expects a remark about the scene with both parts. */
 static void expect_remark(const char *first, const char *second)
 {
     for (int i = 0; i < scene->n_remarks; i++)
@@ -178,7 +180,7 @@ static void expect_views(uint32_t n, int n_remarks)
     assert_int_equal(scene->n_remarks, n_remarks);
 }
 
-/** The largest model is taken, and remarks name the others and count images without a pose. */
+/** The largest model is used. Remarks name the others and count images without a pose. */
 static void test_several(void **state)
 {
     put_images(9, "images", "%d.ppm");
@@ -192,9 +194,9 @@ static void test_several(void **state)
     expect_views(9, 1);
     expect_remark("2 models", "sparse/1 with 9 images is used; sparse/0 has 4");
     put_folder("sparse/12");
-    put_model_text("sparse/12", 9, "%d.ppm", CAMERA); /* as many: the first */
+    put_model_text("sparse/12", 9, "%d.ppm", CAMERA); /* equal size: the first wins */
     put_folder("sparse/x");
-    put_model_text("sparse/x", 9, "%d.ppm", CAMERA); /* no number */
+    put_model_text("sparse/x", 9, "%d.ppm", CAMERA); /* not a number */
     expect_views(9, 1);
     expect_remark("3 models", "sparse/1 with 9 images is used; sparse/12 has 9");
     put_text("sparse/12/images.txt", "no such thing");
@@ -206,7 +208,7 @@ static void test_several(void **state)
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "sparse/0/images.txt: line 1", "IMAGE_ID");
 }
 
-/** Where others have them. */
+/** The places in which other programs put models. */
 static void test_places(void **state)
 {
     static const char *const places[] = {"distorted/sparse/0", "colmap/sparse/0", "sparse/3"};
@@ -222,7 +224,7 @@ static void test_places(void **state)
     }
 }
 
-/** Images in folders, as Windows writes them, too; images with a pose are known by their names without extension. */
+/** Images in folders, also with Windows' separators. Images with a pose are recognised by their names without extension. */
 static void test_folders(void **state)
 {
     put_folder("images");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Anchors that live about moments: where they begin, how long they live, where more of them grow, and that their absence from
- * other moments is held against none of them.
+ * Anchors with lifetimes: their begin and length, densification in time, and statistics that do not count the frames in which an
+ * anchor is absent.
  */
 #include "square_scene.h"
 
@@ -39,7 +39,7 @@ static float span_of(const adcgs_trainer *t, uint32_t anchor, int channel)
     return *adcgs_fmodel_at(t->f, ADCGS_P_SIGMA, anchor, channel);
 }
 
-/** Some of what moves is there for each moment and goes as fast as the square; what is on the wall will not move. */
+/** Each frame has moving anchors about it, as fast as the square. Anchors on the wall are static. */
 static void lives_begin_at_their_moments(void **state)
 {
     adcgs_train_config config = small_config();
@@ -62,12 +62,12 @@ static void lives_begin_at_their_moments(void **state)
     }
     for (int m = 0; m < MOMENTS; m++)
         assert_true(at_moment[m] > 0);
-    print_message("%d move, %d of them as fast as they should, %d stand still\n", moving, fast, still);
+    print_message("%d anchors move, %d of them at the right speed; %d are static\n", moving, fast, still);
     assert_true(fast > moving / 2 && still > moving);
     adcgs_trainer_free(&t);
 }
 
-/** The square is a body: its anchors live as long as it does, and go with it. */
+/** The square is a rigid body: its anchors live as long as it does, and move with it. */
 static void what_keeps_its_form_is_a_body(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -91,13 +91,15 @@ static void what_keeps_its_form_is_a_body(void **state)
         for (int end = 0; end <= 1; end++)
             assert_true(t->f->moving[i] != 0 && adcgs_fmodel_presence(t->f, i, (float)end) > 0.98f);
     }
-    print_message("%d of a body, %d go along\n", of_body, along);
+    print_message("%d anchors of a body, %d move with it\n", of_body, along);
     assert_true(of_body > 10 && along == of_body);
     free(begin);
     adcgs_trainer_free(&t);
 }
 
-/** Where matching finds nothing that moves, spans would be paid for nothing; where none looks, lives begin as long as time. */
+/**
+ * Where stereo finds nothing that moves, lifetimes would cost bits for nothing. Without stereo, lifetimes begin as long as time.
+ */
 static void spans_need_what_moves(void **state)
 {
     adcgs_train_config config = small_config();
@@ -117,7 +119,10 @@ static void spans_need_what_moves(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** An untrained model misses nearly everything: points of two moments, each better than what is drawn, the worst first. */
+/**
+ * An untrained model misses nearly everything. The result holds points of two frames, each better than the render, the worst
+ * first, and repeats exactly.
+ */
 static void what_is_missing_is_found(void **state)
 {
     enum { MOST = 40 };
@@ -126,7 +131,7 @@ static void what_is_missing_is_found(void **state)
     adcgs_trainer *t = make(&config);
     uint32_t n, m;
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
-    for (uint32_t i = 0; i < t->f->n; i++) /* the square is not there at all */
+    for (uint32_t i = 0; i < t->f->n; i++) /* the square is missing */
         for (int k = 0; k < t->f->params.k && t->f->moving[i] != 0; k++)
             t->f->keep[adcgs_fmodel_slot(t->f, i, k)] = 0;
     assert_int_equal(adcgs_moment_find(t, points, MOST, &n, &error), ADCGS_OK);
@@ -139,7 +144,7 @@ static void what_is_missing_is_found(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** Opacity and pixels are means over the moments at which an anchor is there. */
+/** Opacity and pixels are means over the frames in which an anchor is present. */
 static void absence_is_no_idleness(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -152,7 +157,7 @@ static void absence_is_no_idleness(void **state)
     }
     assert_false(adcgs_anchor_is_idle(t, 0, 1));
     t->stats.presence[0] = t->stats.in_view[0] = 100;
-    t->stats.presence[1] = 0; /* was not yet asked to be there */
+    t->stats.presence[1] = 0; /* no frame has asked for it yet */
     assert_true(adcgs_anchor_is_idle(t, 0, 100));
     assert_false(adcgs_anchor_is_idle(t, 1, 1));
     adcgs_trainer_free(&t);
@@ -188,7 +193,9 @@ static void run_until(adcgs_trainer *t, uint32_t iteration)
         fail_msg("%s", error.text);
 }
 
-/** A run with spans and bodies goes on from a checkpoint as if nothing had been, and its stream decodes to what was written. */
+/**
+ * A run with lifetimes and bodies continues from a checkpoint as if it had not stopped. Its stream decodes to the written models.
+ */
 static void runs_go_on_and_decode(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -218,7 +225,7 @@ static void runs_go_on_and_decode(void **state)
     adcgs_trainer_free(&after);
 }
 
-/** Without spans those of the moment in the middle begin, but no more than anchors may: there may be many of them. */
+/** Without lifetimes the points of the middle frame start, limited to the maximum number of anchors. */
 static void one_moment_does_not_overflow(void **state)
 {
     enum { MANY = 1000 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What moves, where it is known: masks from the generator to the figures of a view. */
+/** \file Known motion: masks from the generator to the figures of a view. */
 #include "outside_files.h"
 
 #include "camera/rotation.h"
@@ -30,7 +30,7 @@ static void expect_near(double got, double expected)
         fail_msg("%.15g, expected %.15g", got, expected);
 }
 
-/** A built-in scene, written and read. */
+/** Writes and opens a built-in scene. */
 static void open_scene(const char *name, int size, double motion)
 {
     const adcgs_scenes_options options = {.name = name, .width = size, .height = size, .format = "ppm", .motion = motion};
@@ -62,7 +62,7 @@ static void only_what_moves_counts(void **state)
     expect_near(m.psnr, 20 * log10(8));
     assert_true(m.share == 0.25);
     for (int c = 0; c < 3; c++) {
-        decoded[c * N + 1] = 1.0f; /* wrong, but nobody knows */
+        decoded[c * N + 1] = 1.0f; /* wrong, but unknown in the truth */
         truth[c * N + 1] = NAN;
     }
     m = adcgs_moving_measure(moving, decoded, truth, N);
@@ -81,7 +81,7 @@ static void only_what_moves_counts(void **state)
 
 /* ---- The masks of the scenes ---- */
 
-/** A view's mask is what the tracer finds at that moment of a world that is `motion` times as fast; tiny's ball only slides. */
+/** A view's mask equals the tracer's result at that time in a world `motion` times as fast. The ball of tiny only slides. */
 static void check_mask(const adcgs_scene_view *view, double motion)
 {
     static float expected[PLANE];
@@ -133,7 +133,7 @@ static void what_is_still_has_no_masks(void **state)
 
 /* ---- The figures ---- */
 
-/** What an evaluation has said. */
+/** The results that an evaluation reported. */
 typedef struct heard {
     double dynamic[TESTS], share[TESTS], expected[TESTS], shares[TESTS];
     int n;
@@ -160,7 +160,7 @@ static adcgs_status hear(void *user, const adcgs_view_score *score, adcgs_error 
     return ADCGS_OK;
 }
 
-/** Any stream will do, at the time that it has. */
+/** Evaluates an arbitrary stream, at the time that it has. */
 static adcgs_status evaluate_any(int measure, adcgs_score_fn each, heard *h)
 {
     const char *source = getenv("srcdir");
@@ -193,7 +193,7 @@ static adcgs_scene_view *open_views(void)
     return views;
 }
 
-/** Each view from a camera of its own. */
+/** Each view has another camera. */
 static void views_of_moving_cameras(void **state)
 {
     open_views();
@@ -205,7 +205,7 @@ static void views_of_moving_cameras(void **state)
     }
 }
 
-/** One camera: views that are known are measured by what is known, the other by what changes in all of them. */
+/** One camera: views with a mask are measured by it, the other one by the region that changes over all views. */
 static void views_of_a_fixed_camera(void **state)
 {
     adcgs_scene_view *views = open_views();
@@ -227,7 +227,7 @@ static void views_of_a_fixed_camera(void **state)
     assert_true(isnan(h.dynamic[2]) && h.share[2] == 0);
 }
 
-/** A mask that went after the scene was opened. */
+/** A mask that was deleted after the scene was opened. */
 static void a_mask_that_is_gone(void **state)
 {
     adcgs_scene_view *views = open_views();

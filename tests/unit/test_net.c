@@ -93,7 +93,7 @@ static void test_values_round_trip(void **state)
     adcgs_buffer_clear(&b);
 }
 
-/* The cost that decisions are made by is the length that the coder then produces. */
+/* The cost used for decisions equals the length that the coder then produces. */
 static void test_value_cost(void **state)
 {
     (void)state;
@@ -143,7 +143,7 @@ static void make_tensor(adcgs_tensor *t, uint32_t rows, uint32_t cols)
     assert_non_null(t->m);
 }
 
-/* A network whose every row is as large as the bound allows, or as asked for. */
+/* A network whose rows are as large as the bound allows. */
 static void make_net(adcgs_net *net, int n_layers, const uint32_t *sizes, uint64_t *seed)
 {
     *net = (adcgs_net){ .present = 1, .n_layers = (uint8_t)n_layers };
@@ -249,7 +249,7 @@ static void check_net(const adcgs_net *net, uint64_t *seed)
     }
 }
 
-/* What a network of priors is without them: step indices, as many as it has outputs. */
+/* Turns a network of priors into one without: step indices, one per output. */
 static void make_steps(adcgs_net *net)
 {
     net->role = ADCGS_ROLE_ENTROPY_STEPS;
@@ -332,7 +332,7 @@ static void test_e24_row_bound(void **state)
     adcgs_net_clear(&net);
 }
 
-/* All rows of the last layer of step indices see the layer's shift. */
+/* All rows of the last layer of step indices use the layer's shift. */
 /* REQ-NETW-003, REQ-NETW-010 */
 static void test_e24_steps_bound(void **state)
 {
@@ -405,7 +405,7 @@ static double check_tensor(const adcgs_tensor *t)
     const size_t n = (size_t)t->rows * t->cols, bytes = encode_tensor(t, &b);
     assert_int_equal(decode_tensor(&back, b.data, b.size), ADCGS_OK);
     assert_memory_equal(back.m, t->m, n * sizeof *t->m);
-    /* truncated and damaged data end; what they decode to is for the checksum to refuse */
+    /* truncated and damaged data end; the checksum has to refuse the decoded result */
     for (size_t cut = 0; cut < ADCGS_MIN(bytes, 300); cut++)
         decode_tensor(&back, b.data, cut);
     for (size_t i = 0; i < ADCGS_MIN(bytes, 300); i++) {

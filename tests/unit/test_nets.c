@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What the networks cost and what is done about it: the rate of their weights
- * and its gradient, the choice of lattices, weights that stay binary32.
+ * The cost of the networks and its reduction: the rate of their weights and its gradient, the choice of lattices, weights that
+ * stay binary32.
  */
 #include "tiny_scene.h"
 
@@ -43,7 +43,7 @@ static void randomise(adcgs_fmodel *f, int group, double size)
     }
 }
 
-/** The gradient against central differences; the bits in binary32 are good to about 1e-4 of a bit in 1e4. */
+/** The gradient against central differences. The bits in binary32 are accurate to about 1e-4 of a bit in 1e4. */
 static void weight_rate_has_its_gradient(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -70,7 +70,7 @@ static void weight_rate_has_its_gradient(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** The estimate follows what the weight coder spends. */
+/** The estimate follows the bits of the weight coder. */
 static void weight_rate_is_close_to_the_coder(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -118,12 +118,12 @@ static void price_shrinks_networks(void **state)
         adcgs_stream_clear(&stream, NULL);
         adcgs_trainer_free(&t);
     }
-    print_message("networks: %llu bytes at no price, %llu at a high one\n", (unsigned long long)bytes[0],
+    print_message("networks: %llu bytes without a price, %llu at a high price\n", (unsigned long long)bytes[0],
                   (unsigned long long)bytes[1]);
     assert_true(bytes[1] < bytes[0]);
 }
 
-/** Hidden units go when networks have found their form, and again when bits have become dearer to them. */
+/** Hidden units are pruned once the networks have converged, and again when a bit costs them more. */
 static void units_go_twice(void **state)
 {
     adcgs_train_config config = small_config();
@@ -140,7 +140,7 @@ static void units_go_twice(void **state)
     t->lambda = 100;
     go_on(t, 1250);
     const size_t twice = weights_of(t->f);
-    print_message("%zu weights, then %zu, then %zu\n", before, once, twice);
+    print_message("%zu weights; %zu after the first pruning, %zu after the second\n", before, once, twice);
     assert_int_equal(t->slimmed, 2);
     assert_true(once < before && twice < once);
     adcgs_trainer_free(&t);
@@ -148,7 +148,7 @@ static void units_go_twice(void **state)
 
 /* ---- Lattices ---- */
 
-/** Bits by layer add up to what the networks take in a file, less shapes and framing. */
+/** The bits of all layers sum to the size of the networks in a file, minus shapes and framing. */
 static void lattice_bits_are_the_files(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -166,7 +166,7 @@ static void lattice_bits_are_the_files(void **state)
     adcgs_buffer_init(&out);
     assert_int_equal(adcgs_encode_stream(&stream, t, NULL, 0, &error), ADCGS_OK);
     assert_int_equal(adcgs_encode_verified(&stream, &out, t->cpu, pool, &error), ADCGS_OK);
-    print_message("layers %.0f bytes, file %llu\n", sum, (unsigned long long)stream.bytes.networks);
+    print_message("layers: %.0f bytes, networks in the file: %llu bytes\n", sum, (unsigned long long)stream.bytes.networks);
     assert_float_equal(sum, (double)stream.bytes.networks, 0.01 * sum + 150);
     adcgs_buffer_clear(&out);
     adcgs_stream_clear(&stream, NULL);
@@ -185,7 +185,7 @@ static int sum_of_lattices(const adcgs_fmodel *f)
     return sum;
 }
 
-/** The dearer bits are, the coarser the lattices; the choice changes nothing but lattices and takes no luck. */
+/** The more a bit costs, the coarser the lattices. The choice changes lattices only and uses no random numbers. */
 static void lattices_follow_lambda(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -199,7 +199,7 @@ static void lattices_follow_lambda(void **state)
         assert_int_equal(adcgs_weight_steps_choose(t, &error), ADCGS_OK);
         sum[i] = sum_of_lattices(t->f);
     }
-    print_message("exponents in sum %d, %d, %d\n", sum[0], sum[1], sum[2]);
+    print_message("sums of exponents: %d, %d, %d\n", sum[0], sum[1], sum[2]);
     assert_true(sum[0] >= sum[1] && sum[1] > sum[2]);
     assert_memory_equal(before, t->f->param[ADCGS_P_OMEGA].p, t->f->param[ADCGS_P_OMEGA].n * sizeof *before);
     t->lambda = 1;
@@ -209,7 +209,7 @@ static void lattices_follow_lambda(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** What a layer of a network costs on a lattice, in bits, while all others have all of theirs. */
+/** The cost of a network's layer on a lattice, in bits, while all other layers have full precision. */
 static double cost_on(adcgs_trainer *t, int group, int layer, int e)
 {
     double distortion, bits;
@@ -225,7 +225,7 @@ static double cost_on(adcgs_trainer *t, int group, int layer, int e)
     return distortion + bits;
 }
 
-/** F_theta's lattices about the nominal ones cost no less than those that are chosen. */
+/** No lattice of F_theta near the nominal one costs less than the chosen one. */
 static void assert_cheapest(adcgs_trainer *t)
 {
     const int last = t->f->mlp[ADCGS_P_THETA].hidden;
@@ -242,8 +242,8 @@ static void assert_cheapest(adcgs_trainer *t)
 }
 
 /**
- * Where a large weight makes even the nominal lattice far too coarse, and a coarser one happens to lose less, finer ones are
- * looked at as well.
+ * A large weight makes even the nominal lattice far too coarse, and a coarser one may lose less by chance. The choice tries finer
+ * lattices as well.
  */
 static void no_lattice_about_the_nominal_is_cheaper(void **state)
 {
@@ -258,7 +258,7 @@ static void no_lattice_about_the_nominal_is_cheaper(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** A layer's points are at most two bits, at the output one, farther apart than the 16th (64th) of its weights' rms. */
+/** A layer's lattice step is at most 4 times a 16th of its weights' root mean square; at the output, 2 times a 64th. */
 static void assert_fine(const adcgs_fmodel *f, int group, int layer)
 {
     const adcgs_mlp *m = &f->mlp[group];
@@ -272,7 +272,7 @@ static void assert_fine(const adcgs_fmodel *f, int group, int layer)
     assert_true(ldexp(steps, -m->weight_step[layer]) <= 1.001 * rms || m->weight_step[layer] >= ADCGS_E24_BITS - farther);
 }
 
-/** Of all f_g the means alone are coded: their networks say sigma level 0 everywhere. */
+/** Codes only the means of all f_g: their networks give sigma level 0 everywhere. */
 static void silence_streams(adcgs_fmodel *f)
 {
     for (int c = 0; c < f->params.chunks; c++) {
@@ -283,7 +283,7 @@ static void silence_streams(adcgs_fmodel *f)
     }
 }
 
-/** Streams without a bit left to lose do not make their networks' lattices coarse. */
+/** Streams without any bit left to save do not make their networks' lattices coarse. */
 static void lattices_outlive_their_streams(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -297,7 +297,7 @@ static void lattices_outlive_their_streams(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** Where the mean alone is coded, values are where it is. */
+/** Where only the mean is coded, values equal the mean. */
 static void silent_values_follow_their_means(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -313,7 +313,9 @@ static void silent_values_follow_their_means(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** Weights that stay binary32 are in the file to the bit, and a run may go on with or without from where lattices are due. */
+/**
+ * Binary32 weights are in the file to the bit. A run can continue with or without lattices from the iteration that chooses them.
+ */
 static void raw_networks_are_exact(void **state)
 {
     adcgs_train_config config = small_config();
@@ -343,7 +345,7 @@ static void raw_networks_are_exact(void **state)
 
 /* ---- Narrower networks ---- */
 
-/** Primitives at some time, and the bits of all features. */
+/** Primitives at one time, and the bits of all features. */
 static void outputs(adcgs_trainer *t, float *prim, double *bits)
 {
     adcgs_rate rate;
@@ -363,7 +365,7 @@ static void assert_close(const float *a, const float *b, size_t n, float toleran
             fail_msg("value %zu is %g, expected %g", i, (double)b[i], (double)a[i]);
 }
 
-/** A network without the units that nothing reads computes what it did, and its moments stay with its parameters. */
+/** A network without its unread units computes the same, and the optimiser's state stays with its parameters. */
 static void narrow_networks_compute_the_same(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -404,7 +406,7 @@ static void narrow_networks_compute_the_same(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** The others take over the work of a unit that does a multiple of what one of them does, and of one that never changes. */
+/** If a unit is a multiple of another one, or constant, the other units take over its work. */
 static void silent_units_are_replaced(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -442,7 +444,7 @@ static void silent_units_are_replaced(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** A run with networks of other widths takes them over, wider or narrower. */
+/** A run with networks of other widths restores these, wider or narrower. */
 static void checkpoints_hold_widths(const adcgs_train_config *config, const adcgs_trainer *t)
 {
     adcgs_trainer *other = run_to(config, 110);
@@ -465,7 +467,7 @@ static void checkpoints_hold_widths(const adcgs_train_config *config, const adcg
     adcgs_trainer_free(&other);
 }
 
-/** Units go when bits are dear, and stay when they cost nothing; a run goes on either way and ends in a file. */
+/** Pruning removes units if bits are expensive and keeps them if bits cost nothing. Either run continues and ends in a file. */
 static void units_go_when_bits_are_dear(void **state)
 {
     adcgs_train_config config = small_config();
@@ -479,7 +481,7 @@ static void units_go_when_bits_are_dear(void **state)
         assert_int_equal(adcgs_prune_units(t, &error), ADCGS_OK);
         for (int i = ADCGS_P_THETA; i <= ADCGS_P_VARPI; i++, all += 16)
             units += t->f->mlp[i].width;
-        print_message("%d of %d units left\n", units, all);
+        print_message("%d of %d units remain\n", units, all);
         assert_true(dear ? units < all / 2 : units > all / 2);
         assert_int_equal(t->f->mlp[ADCGS_P_E_STEPS].width, 16);
         t->lambda = (double)config.lambda;

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Out of memory: each allocation of opening a scene, training and encoding fails once, and nothing worse comes of it. */
+/** \file
+ * Out of memory: each allocation of opening a scene, training and encoding fails once, and has no consequence except the error.
+ */
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
@@ -19,7 +21,7 @@ void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t count, size_t size);
 void *__wrap_realloc(void *old, size_t size);
 
-/* Allocations that still succeed; below 0 nothing fails. How many there were. */
+/* Number of allocations that still succeed (below 0: nothing fails), and their total. */
 static atomic_long left = -1;
 static atomic_long allocations = 0;
 
@@ -39,7 +41,7 @@ void *__wrap_calloc(size_t count, size_t size)
     return fails() ? NULL : __real_calloc(count, size);
 }
 
-/** A block that only shrinks may as well stay as it is, and does where it must. */
+/** Only new and growing blocks fail: a shrinking block can stay where it is. */
 void *__wrap_realloc(void *old, size_t size)
 {
     return (!old || size > malloc_usable_size(old)) && fails() ? NULL : __real_realloc(old, size);
@@ -61,7 +63,7 @@ static adcgs_train_config short_config(void)
     return c;
 }
 
-/* ---- What is tried ---- */
+/* ---- The attempts ---- */
 
 static adcgs_status try_scene(void)
 {
@@ -94,7 +96,7 @@ static adcgs_status try_create(void)
     return status;
 }
 
-/** Stages that so short a run leaves out are asked for half-way. */
+/** Half-way, calls the stages that so short a run leaves out. */
 static adcgs_status run_stages(adcgs_trainer *t)
 {
     const uint32_t half = 16;
@@ -140,7 +142,7 @@ static adcgs_status try_run(void)
 
 /* ---- The trial ---- */
 
-/** Let allocations fail, one a try, at most so many of them, spread evenly. */
+/** Lets allocations fail, one per attempt, at most `most` of them, spread evenly. */
 static void each_fails(adcgs_status (*attempt)(void), long most)
 {
     atomic_store(&allocations, 0);
@@ -176,7 +178,7 @@ static void runs_and_streams(void **state)
     each_fails(try_run, getenv("ADCGS_FULL") ? 80 : 40);
 }
 
-/** What several looks to an iteration need beside a run's: sums, and the means before. */
+/** Memory of several view passes per iteration in addition to the run's: sums, and the means before. */
 static void looks(void **state)
 {
     adcgs_train_config config = short_config();

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /**
  * \file
- * Which of twelve cameras around a ball do not stand where they are said to: one that is turned or moved, two
- * that are exchanged, one whose lens is another; and that nothing is said where all are right, all are off, or cameras are few.
+ * Pose outliers among twelve cameras around a ball: a camera that is turned or moved, two that are exchanged, one with another
+ * lens. Nothing is reported if all are right, all are off, or the cameras are few.
  */
-#include "config.h" /* for the declarations that it switches on in system headers */
+#include "config.h" /* for the declarations that it enables in system headers */
 
 #include "ball.h"
 
@@ -22,7 +22,7 @@ static adcgs_stereo_rig rig;
 static adcgs_depths depths[CAMERAS];
 static adcgs_error error;
 
-/** A camera on an arc, which sees the ball. */
+/** A camera on an arc, looking at the ball. */
 static void set_view(adcgs_stereo_view *v, int i)
 {
     const double a = 2.0 * M_PI * (i - 0.5 * (CAMERAS - 1)) / (3 * CAMERAS), tilt = i % 2 ? 0.15 : -0.1;
@@ -38,7 +38,7 @@ static void set_view(adcgs_stereo_view *v, int i)
     v->w = v->h = SIDE;
 }
 
-/** What a camera shows, and how far that is. */
+/** The image of a camera, and its depths. */
 static void look(adcgs_stereo_camera *c, adcgs_depths *d)
 {
     const adcgs_stereo_view *const v = &c->view;
@@ -86,7 +86,7 @@ static int free_rig(void **state)
     return 0;
 }
 
-/** Turn a camera about one of its own axes. */
+/** Turns a camera about one of its own axes. */
 static void turn(int i, int axis, double degrees)
 {
     double *const r = rig.camera[i].view.rotation, one[3], angle = degrees * M_PI / 180.0;
@@ -95,7 +95,7 @@ static void turn(int i, int axis, double degrees)
         adcgs_v3_rotate(one, sin(angle), cos(angle), r + 3 * k);
 }
 
-/** Move it along one of its own axes, by a share of the way to the ball. */
+/** Moves a camera along one of its own axes, by a share of the distance to the ball. */
 static void move(int i, int axis, double share)
 {
     for (int a = 0; a < 3; a++)
@@ -108,7 +108,7 @@ static void exchange(int i, int k)
     set_view(&rig.camera[k].view, i);
 }
 
-/** Judge, and have all cameras where they were. */
+/** Runs the check and restores all cameras. */
 static adcgs_stereo ask(void)
 {
     adcgs_stereo out = { .n_odd = 0 };
@@ -116,19 +116,19 @@ static adcgs_stereo ask(void)
     for (int i = 0; i < CAMERAS; i++)
         set_view(&rig.camera[i].view, i);
     for (int i = 0; i < out.n_odd; i++)
-        print_message("%u: %.2f pixels, %.2f degrees, %.3f of the way\n", out.odd[i].view, out.odd[i].off, out.odd[i].turned,
-                      out.odd[i].moved);
+        print_message("view %u: off by %.2f pixels, rotation %.2f degrees, translation %.3f of the distance\n",
+                      out.odd[i].view, out.odd[i].off, out.odd[i].turned, out.odd[i].moved);
     return out;
 }
 
-/** One is named, and how far beside it shows things, in pixels; as if turned by so many degrees, and moved, more or less. */
+/** Expects one camera to be reported, with its error in pixels and, roughly, its rotation and translation. */
 static void expect_one(double pixels, double degrees, double share)
 {
     const adcgs_stereo out = ask();
     assert_int_equal(out.n_odd, 1);
     assert_int_equal(out.odd[0].view, 100 + ODD);
     assert_true(fabs(out.odd[0].off - pixels) < 0.15 * pixels);
-    assert_true(fabs(out.odd[0].turned - degrees) < 0.5 + 0.4 * degrees); /* a small move and a small turn are much the same */
+    assert_true(fabs(out.odd[0].turned - degrees) < 0.5 + 0.4 * degrees); /* small translations and rotations look alike */
     assert_true(fabs(out.odd[0].moved - share) < 0.05 + 0.1 * share);
 }
 
@@ -138,7 +138,7 @@ static void test_one(void **state)
     const double focal = rig.camera[ODD].view.fx;
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(degrees); i++) {
-        turn(ODD, 1, degrees[i]); /* along the lines on which its neighbours have what it shows */
+        turn(ODD, 1, degrees[i]); /* along the epipolar lines of its neighbours */
         expect_one(focal * tan(degrees[i] * M_PI / 180.0), degrees[i], 0.0);
     }
     turn(ODD, 0, 2.0); /* across them */
@@ -172,13 +172,13 @@ static void test_nothing(void **state)
 {
     (void)state;
     assert_int_equal(ask().n_odd, 0);
-    for (int i = 0; i < CAMERAS; i++) /* then it is not one that is odd */
+    for (int i = 0; i < CAMERAS; i++) /* then no single camera is an outlier */
         turn(i, i % 2, i % 3 - 1.0);
     assert_int_equal(ask().n_odd, 0);
     turn(ODD, 1, 0.05); /* a sixth of a pixel */
     assert_int_equal(ask().n_odd, 0);
     turn(2, 1, 5.0);
-    rig.n_cameras = 4; /* who of them is right? */
+    rig.n_cameras = 4; /* too few cameras to decide which is right */
     assert_int_equal(ask().n_odd, 0);
     rig.n_cameras = CAMERAS;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The layout of Dynamic 3D Gaussians' Panoptic benchmark, arrays in NPZ files, and captures that are not read. */
+/** \file The layout of Dynamic 3D Gaussians' Panoptic benchmark, arrays in NPZ files, and captures that are not supported. */
 #include "layout_files.h"
 #include "opened_scene.h"
 
@@ -8,7 +8,7 @@
 
 enum { T = 4, TRAIN = 3 };
 
-/** One field of a file: rows by moment and camera, of the rig's cameras first, first + 1, ... */
+/** One field of a file: rows by frame and camera, of the rig's cameras first, first + 1, ... */
 static size_t put_field(char *text, const char *field, int moments, int first, int n)
 {
     size_t at = (size_t)sprintf(text, ",\"%s\":[", field);
@@ -88,7 +88,7 @@ static void put_all(void)
             put_picture(name, c * T + t, RIG_WIDTH, RIG_HEIGHT);
             char jpeg[64];
             snprintf(jpeg, sizeof jpeg, "ims/%d/%06d.jpg", c, t);
-            assert_int_equal(rename(in(name), in(jpeg)), 0); /* told by content */
+            assert_int_equal(rename(in(name), in(jpeg)), 0); /* detected by content */
             snprintf(name, sizeof name, "seg/%d/%06d.png", c, t);
             put_picture(name, c * T + t, RIG_WIDTH, RIG_HEIGHT);
         }
@@ -138,7 +138,7 @@ static void test_good(void **state)
                  "train_meta.json");
 }
 
-/** Put a file with one text replaced. */
+/** Writes a file with one text replaced. */
 static void replace(const char *name, const char *from, const char *to)
 {
     char *text = malloc(65536), *made = malloc(65536);
@@ -204,7 +204,7 @@ static void test_npz(void **state)
         assert_int_not_equal(adcgs_npz_read(&data, &bytes, in("cut.npz"), "data", &error), ADCGS_OK);
         assert_null(data);
     }
-    for (size_t i = n - 150; i < n; i++) { /* the directory, with another byte at a time: whatever but a crash */
+    for (size_t i = n - 150; i < n; i++) { /* one byte of the directory at a time changed: any outcome but a crash */
         const uint8_t before = whole[i];
         for (int v = 0; v < 256; v += 51) {
             whole[i] = (uint8_t)v;
@@ -219,7 +219,7 @@ static void test_npz(void **state)
     free(data);
 }
 
-/** A known format that is not read is named. */
+/** A known format without support is named. */
 static void test_record3d(void **state)
 {
     static const char capture[] = "{\"w\":960,\"h\":720,\"fps\":60,\"K\":[1,0,0,0,1,0,0,0,1],\"poses\":[[0,0,0,1,0,0,0]]}";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A scene cut in time: where, and which views its parts have. */
+/** \file A scene cut in time: the cuts, and the views of its parts. */
 #include "data/part.h"
 
 #include <setjmp.h>
@@ -17,7 +17,7 @@ static adcgs_scene scene = { .directory = "here", .views = { [ADCGS_SPLIT_TRAIN]
                              .n_views = { [ADCGS_SPLIT_TRAIN] = VIEWS, [ADCGS_SPLIT_TEST] = 1 }, .duration = 1,
                              .n_times = MOMENTS, .rate = { 10, 1 } };
 
-/** A tenth of a second from one moment to the next, in no order. */
+/** A tenth of a second from one frame to the next, in mixed order. */
 static int set_up(void **state)
 {
     (void)state;
@@ -28,7 +28,7 @@ static int set_up(void **state)
     return 0;
 }
 
-/** How far the first part reaches, and the one before the last; the last never does. */
+/** Expects these crossfades of the first and the second last part; the last part has none. */
 static void expect_reach(double seconds, double fade, double first, double late)
 {
     adcgs_cuts cuts = { .n = 0 };
@@ -66,15 +66,17 @@ static void cuts_lie_at_moments(void **state)
     (void)state;
     expect_cuts(0.5, (const double[]){ 0, 0.5, 1 }, 2, 6);
     expect_cuts(0.33, (const double[]){ 0, 0.3, 0.7, 1 }, 3, 4);
-    expect_cuts(0.4, (const double[]){ 0, 0.4, 0.8, 1 }, 3, 3); /* what is left is half of a part */
-    expect_cuts(0.47, (const double[]){ 0, 0.5, 1 }, 2, 6);      /* and here less */
+    expect_cuts(0.4, (const double[]){ 0, 0.4, 0.8, 1 }, 3, 3); /* the rest is half of a part */
+    expect_cuts(0.47, (const double[]){ 0, 0.5, 1 }, 2, 6);      /* here less */
     expect_cuts(0.1, (const double[]){ 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1 }, 10, 2);
     expect_cuts(1e-9, (const double[]){ 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1 }, 10, 2);
     expect_cuts(1, (const double[]){ 0, 1 }, 1, MOMENTS);
     expect_cuts(1e6, (const double[]){ 0, 1 }, 1, MOMENTS);
 }
 
-/** Each view is in one part, or in both where one reaches into the other, with times from the part's beginning; no others are. */
+/**
+ * Each view is in one part, or in both where one crossfades into the other, with times from the part's start. No other views are.
+ */
 static void parts_share_what_is_at_cuts(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Camera paths of other programs: angles, .chan, USD as text; written and read again, by hand, and bad. */
+/** \file Camera paths of other programs: angles, .chan, USD as text; written and read again, made by hand, and invalid. */
 #include "outside_files.h"
 
 #include "camera/euler.h"
@@ -35,7 +35,7 @@ static void read_good(const char *name, adcgs_camera_path *frames)
         fail_msg("%s", error.text);
 }
 
-/** A rotation in OpenCV axes, as a camera's: about x, y, z of the world, one after the other. */
+/** A rotation in OpenCV axes, as of a camera: about x, y, z of the world, one after the other. */
 static void turned(double pose[12], const char *axes, const double degrees[3])
 {
     double columns[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -58,7 +58,7 @@ static double pose_difference(const double a[12], const double b[12])
     return most;
 }
 
-/* Angles are those of turns about the axes, one after the other, in each order; and come back, looking straight up, too. */
+/* Angles equal turns about the axes, one after the other, in each order. They are restored from the pose, straight up too. */
 static void test_angles(void **state)
 {
     uint64_t seed = 3;
@@ -147,7 +147,7 @@ static void test_chan_by_hand(void **state)
     assert_true(pose_difference(frames.frame[0].camera.cam_to_world, straight) < 1e-12);
     assert_true(fabs(frames.frame[0].camera.fy - 24.0) < 1e-9 && fabs(frames.frame[0].camera.fx - 24.0) < 1e-9);
     assert_true(pose_difference(frames.frame[1].camera.cam_to_world, left) < 1e-12);
-    assert_true(frames.frame[1].camera.fx == like.fx && frames.frame[1].camera.cx == like.cx); /* no lens of its own */
+    assert_true(frames.frame[1].camera.fx == like.fx && frames.frame[1].camera.cx == like.cx); /* no lens in the file */
     assert_true(fabs(frames.frame[2].camera.cam_to_world[6] - 1.0) < 1e-12); /* it looks along y */
     adcgs_camera_path_free(&frames);
     adcgs_camera_path_request request = {.has_times = 1, .begin = 7.0, .end = 7.0};
@@ -173,7 +173,7 @@ static void test_usd_again(void **state)
     adcgs_camera_path_free(&frames);
 }
 
-/** As other programs write cameras: under parents, by operations, a lens that changes; and much that is of no interest. */
+/** A camera as other programs write it: under parents, by operations, with a changing lens, and among irrelevant data. */
 static const char by_others[] =
     "#usda 1.0\n(\n    \"a [ comment\"\n    defaultPrim = \"root\"\n    doc = \"\"\"Blender v9 \"quoted\" {\"\"\"\n"
     "    metersPerUnit = 1\n    upAxis = \"Z\"\n    startTimeCode = 1\n    endTimeCode = 25\n    timeCodesPerSecond = 24\n"
@@ -216,7 +216,7 @@ static void test_usd_of_others(void **state)
         assert_true(fabs(frames.frame[i].time - (1.0 + i / 24.0)) < 1e-12);
     }
     adcgs_camera_path_free(&frames);
-    /* A camera that says nothing is USD's own, at the origin. */
+    /* A camera without attributes has USD's defaults, at the origin. */
     put_text("n.usda", "#usda 1.0\ndef Camera \"c\" {}\n");
     read_good("n.usda", &frames);
     assert_true(frames.n == 1 && frames.frame[0].camera.cam_to_world[10] == -1.0);
@@ -274,7 +274,7 @@ static void test_bad(void **state)
                  ADCGS_ERR_UNSUPPORTED, "x.usdc", "expected .usda");
 }
 
-/* Whatever is cut off a file, or changed in it, is an error or a path, and nothing else. */
+/* A file that is cut or changed anywhere gives an error or a path, and nothing else. */
 static void test_damaged(void **state)
 {
     char text[sizeof by_others];

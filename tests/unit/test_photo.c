@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Photos made upright and smaller: where each pixel goes for each way EXIF says, and that what is even stays even. */
+/** \file Photos made upright and smaller: the place of each pixel for each EXIF orientation, and that even areas stay even. */
 #include "outside_files.h"
 
 #include "io/photo.h"
@@ -15,7 +15,7 @@ static void make(adcgs_image *image, int width, int height, float step)
         image->data[i] = step * (float)i;
 }
 
-/** The first row of what is stored is, upright, at the top, top, bottom, bottom; or at the left, right, right, left. */
+/** The first stored row is, upright, at the top, top, bottom, bottom; or at the left, right, right, left. */
 static void test_turns(void **state)
 {
     for (int turn = 1; turn <= 8; turn++) {
@@ -37,7 +37,7 @@ static void test_turns(void **state)
     }
 }
 
-/** Colour of one kind stays that; the mean of all stays what it is. */
+/** An image of one colour keeps it; the mean of any image stays. */
 static void test_smaller(void **state)
 {
     adcgs_image image;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures kept in memory and in a file: the same values, whatever the budget. */
+/** \file Images kept in memory and in a file: the same values for any budget. */
 #include "outside_files.h"
 
 #include "data/pictures.h"
@@ -98,7 +98,7 @@ static void test_reduced(void **state)
     adcgs_pictures_free(&filed);
 }
 
-/** One picture instead of another, wide or not, wherever it lies. */
+/** Replaces an image, wide or not, in memory or in the file. */
 static void test_put(void **state)
 {
     for (uint64_t memory = 0; memory < 2; memory++) {
@@ -140,7 +140,7 @@ static void test_progress(void **state)
     assert_null(pictures);
 }
 
-/** Change TMPDIR, or change it back: NULL. */
+/** Changes TMPDIR; NULL restores it. */
 static void use_tmpdir(const char *name)
 {
     static char *before;
@@ -154,7 +154,7 @@ static void use_tmpdir(const char *name)
     before = NULL;
 }
 
-/** Images that are decoded again are the same as those that are kept; divide: 16 bits, too. */
+/** Images that are decoded again equal those that are kept; divide: with 16 bits, too. */
 static void expect_same_as_kept(const adcgs_pictures *pictures, int divide)
 {
     adcgs_pictures *kept;
@@ -213,7 +213,7 @@ static void test_limited_room(void **state)
     adcgs_pictures_free(&pictures);
 }
 
-/** The first in the order of views is told, not the first to fail. */
+/** The error names the first missing image in the order of views, not the first to fail. */
 static void test_missing_picture(void **state)
 {
     adcgs_pictures *pictures;

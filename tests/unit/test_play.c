@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The player without a window: cameras moved by hand, its clock, resolution, events, scripts, letters. */
+/** \file The player without a window: interactive cameras, its clock, resolution, events, scripts, letters. */
 #include "outside_files.h"
 
 #include "camera/rotation.h"
@@ -12,7 +12,7 @@
 
 #include <math.h>
 
-/** A stream of 10 frames from second 2 on, whose scene of 3 units lies about (1, 2, 3). */
+/** A stream of 10 frames from second 2 on. Its scene has a scale of 3 units about (1, 2, 3). */
 static adcgs_info make_info(const char *axes)
 {
     adcgs_info info = {.time_start = 2.0, .time_end = 2.9, .frame_rate = 10.0, .scene_origin = {1.0, 2.0, 3.0},
@@ -21,7 +21,7 @@ static adcgs_info make_info(const char *axes)
     return info;
 }
 
-/** At a distance of 6 from the centre, looking at it along +y, z up. */
+/** A camera at a distance of 6 from the centre, looking at it along +y, z up. */
 static adcgs_camera make_camera(void)
 {
     return (adcgs_camera){.width = 640, .height = 480, .fx = 500.0, .fy = 510.0, .cx = 300.0, .cy = 250.0, .near_plane = 0.03,
@@ -95,7 +95,7 @@ static void test_orbit_follows_mouse(void **state)
     assert_true(fabs(control.camera.cam_to_world[3] - (1.0 - 6.0 * sin(0.1))) < 1e-12);
     assert_true(fabs(control.camera.cam_to_world[7] - (2.0 - 6.0 * cos(0.1))) < 1e-12);
     control = make_rig("right-handed, z up");
-    adcgs_orbit_control_look(&control, -0.1, 0.0); /* looks to the right, +x, from where it is */
+    adcgs_orbit_control_look(&control, -0.1, 0.0); /* turns to the right, +x, in place */
     assert_true(fabs(control.camera.cam_to_world[2] - sin(0.1)) < 1e-12);
     assert_true(control.camera.cam_to_world[3] == 1.0 && control.camera.cam_to_world[7] == -4.0 &&
                 control.camera.cam_to_world[11] == 3.0);
@@ -106,7 +106,7 @@ static void test_up(void **state)
     assert_true(make_rig("right-handed, z up").up[2] == 1.0);
     assert_true(make_rig("right-handed, y up").up[1] == 1.0);
     assert_true(make_rig("right-handed, y down").up[1] == -1.0);
-    /* Where nobody says, the camera knows: here its own up is +z, then it is tilted by a quarter turn and is +x. */
+    /* Without axes in the stream, the camera's up counts: here +z, then +x after a tilt by a quarter turn. */
     adcgs_info info = make_info("unknown");
     adcgs_camera camera = make_camera();
     adcgs_orbit_control control = make_rig("unknown");
@@ -128,7 +128,7 @@ static void test_pan_and_zoom(void **state)
     adcgs_orbit_control_pan(&control, 0.1, -0.05);
     assert_true(fabs(adcgs_orbit_control_distance(&control) - 6.0) < 1e-12);
     assert_true(looks_at(&control, control.target) > 1.0 - 1e-12);
-    /* The old target is now where it was dragged to: right by 0.1 focal lengths, up by 0.05. */
+    /* The old target is now at the dragged place: right by 0.1 focal lengths, up by 0.05. */
     double to[3];
     for (int i = 0; i < 3; i++)
         to[i] = before.target[i] - control.camera.cam_to_world[4 * i + 3];
@@ -140,7 +140,7 @@ static void test_pan_and_zoom(void **state)
     adcgs_orbit_control_zoom(&control, 1e9);
     assert_true(adcgs_orbit_control_distance(&control) > 0.0 && adcgs_orbit_control_distance(&control) < 0.01);
     for (int i = 0; i < 300; i++)
-        adcgs_orbit_control_zoom(&control, -1e3); /* never out of this world */
+        adcgs_orbit_control_zoom(&control, -1e3); /* the distance has a limit */
     assert_true(adcgs_orbit_control_distance(&control) < 3e5 * 3.0 + 10.0);
     assert_rotation(&control);
 }
@@ -167,7 +167,7 @@ static void test_view(void **state)
     adcgs_camera view, again = control.camera;
     adcgs_orbit_control_view(&control, 640, 480, &view);
     assert_memory_equal(&view, &control.camera, sizeof view);
-    adcgs_orbit_control_view(&control, 1920, 1440, &view); /* the same shape: what stretching gives, to the last bit */
+    adcgs_orbit_control_view(&control, 1920, 1440, &view); /* the same aspect: equal to stretching, to the last bit */
     adcgs_camera_stretch(&again, 1920, 1440);
     assert_memory_equal(&view, &again, sizeof view);
     adcgs_orbit_control_view(&control, 1000, 480, &view); /* 180 pixels more at both sides */
@@ -191,13 +191,13 @@ static void test_clock(void **state)
     adcgs_play_clock_toggle(&clock);
     adcgs_play_clock_tick(&clock, 105.05);
     assert_int_equal(adcgs_play_clock_frame(&clock), 0);
-    adcgs_play_clock_tick(&clock, 105.45); /* 0.4 s without a tick: four frames further all the same */
+    adcgs_play_clock_tick(&clock, 105.45); /* 0.4 s without a tick still advance by four frames */
     assert_int_equal(adcgs_play_clock_frame(&clock), 4);
     assert_true(adcgs_play_clock_time(&clock) == 2.0 + 4 / 10.0);
     assert_int_equal(adcgs_play_clock_dropped(&clock, 0, 4), 3);
     assert_int_equal(adcgs_play_clock_dropped(&clock, 3, 4), 0);
     assert_int_equal(adcgs_play_clock_dropped(&clock, 8, 1), 2);
-    adcgs_play_clock_tick(&clock, 106.05); /* 1.05 s since it began: round the end */
+    adcgs_play_clock_tick(&clock, 106.05); /* 1.05 s after its start: past the end */
     assert_int_equal(adcgs_play_clock_frame(&clock), 0);
     clock.loop = 0;
     adcgs_play_clock_tick(&clock, 206.0);
@@ -209,7 +209,7 @@ static void test_clock(void **state)
     assert_int_equal(adcgs_play_clock_frame(&clock), 0);
 }
 
-/** Of a stream that is still coming: playing waits where it ends, and goes on when there is more. */
+/** While a stream is still arriving, playing waits at its current end and continues when more arrives. */
 static void test_clock_waits(void **state)
 {
     adcgs_play_clock clock;
@@ -230,7 +230,7 @@ static void test_clock_waits(void **state)
     clock.reach = INFINITY;
     adcgs_play_clock_tick(&clock, 9.1);
     assert_int_equal(adcgs_play_clock_frame(&clock), 5);
-    adcgs_play_clock_span(&clock, 1.0, 1.3); /* it lasts less long than was thought */
+    adcgs_play_clock_span(&clock, 1.0, 1.3); /* the stream is shorter than expected */
     assert_int_equal(clock.frames, 4);
     assert_int_equal(adcgs_play_clock_frame(&clock), 3);
 }
@@ -255,7 +255,7 @@ static void test_clock_steps(void **state)
     adcgs_play_clock clock;
     adcgs_play_clock_init(&clock, 1.0 / 3.0, 1.0 / 3.0 + 299 / 29.97, 29.97, 0.0);
     assert_int_equal(clock.frames, 300);
-    for (int i = 0; i < 300; i++) { /* each frame is met exactly */
+    for (int i = 0; i < 300; i++) { /* each frame is hit exactly */
         assert_int_equal(adcgs_play_clock_frame(&clock), i);
         assert_true(adcgs_play_clock_time(&clock) == 1.0 / 3.0 + i / 29.97);
         adcgs_play_clock_step(&clock, 1);
@@ -272,13 +272,13 @@ static void test_clock_steps(void **state)
     assert_int_equal(adcgs_play_clock_frame(&clock), 0);
     adcgs_play_clock_seek(&clock, 7.0);
     assert_int_equal(adcgs_play_clock_frame(&clock), 299);
-    adcgs_play_clock_init(&clock, 5.0, 5.0, 30.0, 0.0); /* one frame alone never plays */
+    adcgs_play_clock_init(&clock, 5.0, 5.0, 30.0, 0.0); /* a single frame never plays */
     adcgs_play_clock_toggle(&clock);
     adcgs_play_clock_step(&clock, 1);
     assert_true(!clock.playing && clock.frames == 1 && adcgs_play_clock_time(&clock) == 5.0);
 }
 
-/** Play for some pictures that take seconds at full resolution, base of it whatever the size. \return changes of divider. */
+/** Plays images that take `seconds` each at full resolution, `base` of it at any size. \return changes of divider. */
 static int play_pictures(adcgs_play_scale *scale, double base, double seconds, int pictures)
 {
     int changes = 0;
@@ -295,10 +295,10 @@ static void test_scale(void **state)
     adcgs_play_scale scale;
     adcgs_play_scale_init(&scale, 1);
     assert_int_equal(play_pictures(&scale, 0.0, 0.030, 100), 0); /* fits */
-    adcgs_play_scale_took(&scale, 0.2, 1.0 / 30.0);              /* one slow picture is no reason */
+    adcgs_play_scale_took(&scale, 0.2, 1.0 / 30.0);              /* one slow image changes nothing */
     assert_int_equal(play_pictures(&scale, 0.0, 0.030, 100), 0);
     play_pictures(&scale, 0.0, 0.2, 100);
-    assert_int_equal(scale.divider, 3);                          /* 22 ms; at 1/2 it were 50 */
+    assert_int_equal(scale.divider, 3);                          /* 22 ms; 50 at 1/2 */
     assert_int_equal(play_pictures(&scale, 0.0, 0.2, 1000), 0);  /* and stays */
     play_pictures(&scale, 0.0, 0.01, 100);
     assert_int_equal(scale.divider, 1);
@@ -306,7 +306,7 @@ static void test_scale(void **state)
     assert_int_equal(scale.divider, ADCGS_PLAY_DIVIDER_MAX);
 }
 
-/** Whatever pictures take, the resolution settles: it never goes up and down for ever. */
+/** For any rendering times the resolution settles: it never oscillates. */
 static void test_scale_settles(void **state)
 {
     for (int base = 0; base <= 30; base += 5)
@@ -318,7 +318,9 @@ static void test_scale_settles(void **state)
         }
 }
 
-/** Behind half the resolution tiers go, one after the other, then pixels; they come back as they went, and nothing swings. */
+/**
+ * At half the resolution the player drops tiers, one by one, then pixels again. They come back in reverse, without oscillation.
+ */
 static void test_scale_tiers(void **state)
 {
     (void)state;
@@ -394,7 +396,7 @@ static void test_keys(void **state)
     assert_int_equal(play.jumped, 0);
     key(&play, '[');
     assert_int_equal(play.jumped, 1);
-    key(&play, '7'); /* there is no such camera */
+    key(&play, '7'); /* no such camera */
     assert_true(play.jumped == 1 && strstr(play.message, "2 cameras"));
     key(&play, 'r');
     assert_true(play.jumped == -1 && play.control.camera.cam_to_world[3] == 1.0);
@@ -422,7 +424,7 @@ static void test_keys(void **state)
     assert_true(play.quit);
 }
 
-/** q leaves, but in flight it goes down. */
+/** q quits, except in flight, where it moves down. */
 static void test_quit(void **state)
 {
     adcgs_camera cameras[2] = {make_camera(), make_camera()};
@@ -436,7 +438,7 @@ static void test_quit(void **state)
     assert_true(play.quit);
 }
 
-/** A held key repeats what is done in steps, and nothing else. */
+/** A held key repeats single steps, and nothing else. */
 static void test_repeats(void **state)
 {
     adcgs_camera cameras[2] = {make_camera(), make_camera()};
@@ -460,12 +462,12 @@ static void test_mouse(void **state)
     motion(&play, 200, 100, 100, 0);
     assert_true(adcgs_play_moving(&play) && fabs(adcgs_orbit_control_distance(&play.control) - 6.0) < 1e-12);
     assert_true(play.control.camera.cam_to_world[3] < 1.0 && looks_at(&play.control, play.control.centre) > 1.0 - 1e-12);
-    assert_string_equal(play.control.camera.name, ""); /* it is the first camera no more */
+    assert_string_equal(play.control.camera.name, ""); /* no longer the first camera */
     button(&play, 1, 0, 200, 100);
     adcgs_play_tick(&play, 51.0);
     assert_false(adcgs_play_moving(&play));
     key(&play, 'r');
-    button(&play, 3, 1, 100, 100); /* what is under the pointer stays there: 50 pixels of 500 at a depth of 6 */
+    button(&play, 3, 1, 100, 100); /* the point under the pointer stays there: 50 pixels of 500 at a depth of 6 */
     motion(&play, 150, 100, 50, 0);
     button(&play, 3, 0, 150, 100);
     assert_true(fabs(play.control.camera.cam_to_world[3] - (1.0 - 0.6)) < 1e-12);
@@ -482,7 +484,7 @@ static void test_scrub(void **state)
     assert_true(bar.width > 400 && bar.y + bar.height == 480);
     button(&play, 1, 1, bar.width - 1, bar.y + 3);
     assert_int_equal(adcgs_play_clock_frame(&play.clock), 9);
-    motion(&play, bar.width / 3.0, 20, -9, -9); /* it is still the bar that is dragged, wherever the pointer is */
+    motion(&play, bar.width / 3.0, 20, -9, -9); /* the bar is still dragged, wherever the pointer is */
     assert_int_equal(adcgs_play_clock_frame(&play.clock), 3);
     button(&play, 1, 0, 0, 20);
     assert_memory_equal(&play.control, &before, sizeof before);
@@ -496,13 +498,13 @@ static void test_flight(void **state)
     adcgs_play_state play = make_state(cameras);
     key(&play, 'f');
     adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = 'w', .down = 1});
-    adcgs_play_tick(&play, 50.5); /* half a second, a scene unit a second: 1.5 along +y */
+    adcgs_play_tick(&play, 50.5); /* half a second at one scene unit per second: 1.5 along +y */
     assert_true(fabs(play.control.camera.cam_to_world[7] + 2.5) < 1e-12 && adcgs_play_moving(&play));
-    adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_LOST}); /* who looks elsewhere holds no key */
+    adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_LOST}); /* losing the focus releases all keys */
     adcgs_play_tick(&play, 55.0);
     assert_true(fabs(play.control.camera.cam_to_world[7] + 2.5) < 1e-12);
     motion(&play, 0, 0, 16, 0);
-    assert_true(play.control.camera.cam_to_world[2] > 0.05); /* looks to the right */
+    assert_true(play.control.camera.cam_to_world[2] > 0.05); /* turns to the right */
     key(&play, ADCGS_KEY_ESCAPE);
     assert_true(!play.flying && !play.quit);
 }
@@ -527,14 +529,14 @@ static void test_letters(void **state)
             const int inside = x >= 3 && y >= 5 + 2 * ADCGS_CELL_HEIGHT && column < 6 && row < 9;
             assert_int_equal(pixel(&panel, x, y), inside && picture[6 * row + column] == '#' ? 0xa0b0c0d0 : 0x01020304);
         }
-    /* Beyond the edges nothing is written: the sanitizers watch. */
+    /* Nothing is written beyond the edges: the sanitizers watch. */
     adcgs_panel_text(&panel, -7, -5, 3, "cut off on all sides\nyes\nyes\nyes", 1);
     adcgs_panel_fill(&panel, -100, -100, 1000, 1000, 0xffffffff);
     assert_int_equal(pixel(&panel, 59, 39), 0xffffffff);
     adcgs_panel_init(&panel, 100000, 1, 0);
     assert_int_equal(panel.width, 0);
     adcgs_panel_free(&panel);
-    for (int c = ' ' + 1; c < 127; c++) /* all are there, and none is another's */
+    for (int c = ' ' + 1; c < 127; c++) /* all letters exist, and no two are equal */
         for (int d = c + 1; d < 127; d++)
             assert_memory_not_equal(adcgs_glyph((char)c), adcgs_glyph((char)d), ADCGS_GLYPH_HEIGHT);
     assert_ptr_equal(adcgs_glyph((char)0xe4), adcgs_glyph('?'));
@@ -555,7 +557,7 @@ static void test_overlay(void **state)
     key(&play, 'i');
     key(&play, 'h');
     adcgs_play_say(&play, "%s", "a word");
-    for (int size = 64; size < 2000; size += 97) { /* whatever the window, panels begin within it */
+    for (int size = 64; size < 2000; size += 97) { /* in a window of any size, panels begin inside it */
         adcgs_play_resize(&play, size, 2100 - size, 1.0 + size / 700);
         adcgs_overlay_draw(panels, &play, &figures);
         for (int i = 0; i < ADCGS_PANELS; i++)
@@ -564,8 +566,8 @@ static void test_overlay(void **state)
     adcgs_play_resize(&play, 640, 480, 1.0);
     adcgs_play_tick(&play, 60.0);
     adcgs_overlay_draw(panels, &play, &figures);
-    assert_int_equal(panels[2].width, 0); /* the word has gone */
-    for (int i = 0; i < ADCGS_PANELS; i++) { /* at this size all is to be seen */
+    assert_int_equal(panels[2].width, 0); /* the message is gone */
+    for (int i = 0; i < ADCGS_PANELS; i++) { /* at this size everything is visible */
         assert_true(panels[i].x + panels[i].width <= 640 && panels[i].y + panels[i].height <= 480);
         adcgs_panel_free(&panels[i]);
     }
@@ -617,7 +619,7 @@ static void test_bad_scripts(void **state)
         char text[100];
         snprintf(text, sizeof text, "quit\n%s\nquit\n", bad[i]);
         if (read_script(&script, text) != ADCGS_ERR_USAGE)
-            fail_msg("\"%s\" is taken for a command", bad[i]);
+            fail_msg("\"%s\" was accepted as a command", bad[i]);
         assert_non_null(strstr(error.text, "a.script: line 2 is no command"));
         assert_null(script.lines);
     }

@@ -188,7 +188,7 @@ static void test_round_trip(void **state)
     adcgs_points_free(&back);
 }
 
-/** Points about a place, in binary64: read back as they are where they lie far from the origin, else as numbers of binary32. */
+/** Points about a place, in binary64: kept exactly if they are far from the origin, else rounded to binary32. */
 static void expect_places(double at, double size, int is_far)
 {
     static uint8_t data[128 + 100 * 24];
@@ -266,7 +266,7 @@ static void test_draco(void **state)
     }
 }
 
-/** The points come back in their order, off by at most half a step of 16 bits of the longest edge; colours as they were. */
+/** Points are read back in their order, off by at most half a step of 16 bits of the longest edge; colours are exact. */
 static void expect_draco_round_trip(const adcgs_points *points)
 {
     adcgs_points back;
@@ -314,7 +314,7 @@ static void test_draco_writing(void **state)
             points.position[i][a] = (double)(100.0f + (float)(i * 7919 % 1000) / (float)(a + 1));
             points.colour[i][a] = (uint8_t)(i * 7 + (uint32_t)a);
         }
-    memcpy(points.position[999], points.position[3], sizeof *points.position); /* no two become one */
+    memcpy(points.position[999], points.position[3], sizeof *points.position); /* equal points are not merged */
     memcpy(points.colour[999], points.colour[3], sizeof *points.colour);
     points.coloured = 1;
     expect_draco_round_trip(&points);

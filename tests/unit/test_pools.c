@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Threads that decoders share or borrow: the same frames, whoever runs the work, in whatever order and mode. */
+/** \file Threads that decoders share or borrow: the same frames for any threads, in any order and rounding mode. */
 #include "config.h"
 
 #include "decoder_fixture.h"
@@ -17,11 +17,11 @@ static adcgs_decoder *open_in(const fixture *f, adcgs_pool *pool)
     adcgs_config config;
     adcgs_config_init(&config, sizeof config);
     config.pool = pool;
-    config.threads = pool ? 12345 : 1; /* not looked at when there is a pool */
+    config.threads = pool ? 12345 : 1; /* ignored if there is a pool */
     return open_with(f, &config);
 }
 
-/** No assertion of the framework in here: it runs in threads of its own, too. */
+/** Contains no assertion of the framework, since it also runs in other threads. */
 static int draws_reference(adcgs_decoder *d)
 {
     float rgb[3 * FIXTURE_WIDTH * FIXTURE_HEIGHT];
@@ -69,13 +69,13 @@ static void test_shared_pool(void **state)
     }
     adcgs_close(&users[0].decoder);
     adcgs_close(&users[1].decoder);
-    assert_true(draws_reference(users[2].decoder)); /* the pool outlives those that used it */
+    assert_true(draws_reference(users[2].decoder)); /* the pool outlives its users */
     adcgs_close(&users[2].decoder);
     adcgs_pool_free(&pool);
     assert_null(pool);
 }
 
-/** A caller's threads: how it runs tasks, and what it saw. */
+/** A caller's threads: how they run tasks, and statistics. */
 typedef struct lender {
     int threads, mode;
     int calls, most, modes_kept;
@@ -105,7 +105,7 @@ static void *lent_main(void *arg)
     return NULL;
 }
 
-/** A thread for each task, in the lender's mode of rounding. */
+/** A thread for each task, in the lender's rounding mode. */
 static void run_on_threads(void *arg, adcgs_task_fn task, void *work, int n)
 {
     lender *l = arg;
@@ -146,7 +146,7 @@ static void test_lent_threads(void **state)
     assert_true(upward.modes_kept > upward.calls); /* each thread has its own mode back */
 }
 
-/** Threads that a pool starts are not in the mode of the thread that made it. */
+/** Threads that a pool starts do not inherit the rounding mode of its creator. */
 static void test_pool_made_in_another_mode(void **state)
 {
     adcgs_pool *pool;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Bytes as they come: cut anywhere they give what reading in order gives, every prefix of a stream too; what can be drawn on the
- * way is what a stream that ends there would show; calls take a part at a time, failures are final, what was there stays; what
- * is said to be final does not change, and what is past need not be kept.
+ * Pushed bytes. Cut at any place, they give the same result as reading in order, and so does every prefix of a stream. Before the
+ * end, the decoder can render the same as a stream that ends there. A call takes one part at a time. Failures are final and leave
+ * the decoded data usable. Frames that are reported as final do not change, and past data may be discarded.
  */
 #include "stream_fixture.h"
 
@@ -15,7 +15,7 @@
 
 enum { SEGMENTS = 4 };
 
-/** Small, so that every prefix can be tried: a key, two that are predicted, a key; layers of several slices. */
+/** Small, so that the test can try every prefix: a key, two predicted segments, a key; layers of several slices. */
 static int setup(void **state)
 {
     fixture *f = fixture_new(state);
@@ -40,7 +40,7 @@ static adcgs_decoder *open_push(void)
     return d;
 }
 
-/** The digests of all models, one after the other; how many. */
+/** The digests of all models, one after the other. Returns their number. */
 static int digests(adcgs_decoder *d, uint8_t out[SEGMENTS][16])
 {
     int n = 0;
@@ -49,7 +49,7 @@ static int digests(adcgs_decoder *d, uint8_t out[SEGMENTS][16])
     return n;
 }
 
-/** Push some bytes in pieces of chance, at most so many at a time. */
+/** Pushes bytes in pieces of random size up to `piece`. */
 static adcgs_status push_all(adcgs_decoder *d, const uint8_t *data, size_t bytes, uint64_t *seed, int64_t piece)
 {
     adcgs_status status = ADCGS_OK;
@@ -88,7 +88,7 @@ static void test_cut_anywhere(void **state)
     }
 }
 
-/** After each prefix the picture is that of the stream that ends there, before it is said that it does, and afterwards. */
+/** After each prefix the state equals that of the stream that ends there, both before and after the end is signalled. */
 static void test_every_prefix(void **state)
 {
     const fixture *f = *state;
@@ -100,7 +100,7 @@ static void test_every_prefix(void **state)
         if (size > 0)
             assert_int_equal(push_all(d, f->bytes.data + size - 1, 1, &seed, 1), ADCGS_OK);
         const int n = digests(d, now);
-        if (size % 7 && size + 40 < f->bytes.size) /* the rest is slow */
+        if (size % 7 && size + 40 < f->bytes.size) /* trying every size would be slow */
             continue;
         const adcgs_status status = adcgs_open_memory(&in_order, f->bytes.data, size, NULL, NULL);
         ends = open_push();
@@ -110,7 +110,7 @@ static void test_every_prefix(void **state)
             const int expected = digests(in_order, whole);
             assert_int_equal(digests(ends, ended), expected);
             assert_memory_equal(ended, whole, (size_t)expected * 16);
-            /* Of a part that is cut off, reading to the end may use slices, and so have a segment more, or more of the last. */
+            /* Reading to the end may also use the slices of a cut part, and so have one segment more, or more of the last one. */
             assert_in_range(n, expected - 1, expected);
             assert_memory_equal(now, whole, (size_t)(expected - 1) * 16);
         } else {
@@ -122,7 +122,7 @@ static void test_every_prefix(void **state)
     adcgs_close(&d);
 }
 
-/** What comes in which order, and that a call takes no more than one part. */
+/** The order of arrivals; a call takes at most one part. */
 static void test_arrivals(void **state)
 {
     const fixture *f = *state;
@@ -166,7 +166,7 @@ static void test_arrivals(void **state)
     adcgs_close(&other);
 }
 
-/** Damage is met where it is; the same failure comes again; segments before it are there. */
+/** Damage is found at its place. The same failure is returned again, and the segments before it stay available. */
 static void test_damage(void **state)
 {
     const fixture *f = *state;
@@ -199,7 +199,7 @@ static void test_damage(void **state)
     }
 }
 
-/** What is said to be final is: from then on, whatever comes, splats are those of the whole stream. */
+/** Final frames are final: their splats are those of the whole stream, whatever bytes follow. */
 static void test_final(void **state)
 {
     const fixture *f = *state;
@@ -232,7 +232,7 @@ static void test_final(void **state)
     adcgs_close(&whole);
 }
 
-/** Push a stream and draw on the way what is final; with `forgets`, each moment is the first that is still needed. */
+/** Pushes a stream and renders final frames on the way. forgets: each time is the first one that is still needed. */
 static adcgs_status play_through(const fixture *f, uint64_t memory_limit, int forgets)
 {
     const adcgs_stream *s = &f->stream;
@@ -243,7 +243,7 @@ static adcgs_status play_through(const fixture *f, uint64_t memory_limit, int fo
     config.memory_limit = memory_limit;
     assert_int_equal(adcgs_open_push(&d, &config, NULL), ADCGS_OK);
     adcgs_status status = ADCGS_OK;
-    uint32_t next = 0; /* segment to be drawn */
+    uint32_t next = 0; /* segment to render */
     for (size_t at = 0, used = 0; at < f->bytes.size && status == ADCGS_OK; at += used) {
         adcgs_arrival arrived;
         adcgs_info info = { .time_final = -INFINITY };
@@ -273,7 +273,7 @@ static adcgs_status play_through(const fixture *f, uint64_t memory_limit, int fo
     return status;
 }
 
-/** In how much memory it can be done, about. */
+/** The approximate memory that the decoder needs. */
 static uint64_t least_memory(const fixture *f, int forgets)
 {
     uint64_t limit = 1 << 16;
@@ -283,7 +283,7 @@ static uint64_t least_memory(const fixture *f, int forgets)
     return limit;
 }
 
-/** What is past takes no memory. */
+/** Discarded segments take no memory. */
 static void test_forget(void **state)
 {
     const fixture *f = *state;
@@ -295,8 +295,8 @@ static void test_forget(void **state)
     assert_int_equal(fixture_turns(longer, &params, 48, 300, 5, 20, &seed), 0);
     assert_int_equal(play_through(f, 0, 1), ADCGS_OK);
     const uint64_t all = least_memory(longer, 0), few = least_memory(longer, 1);
-    print_message("48 segments take %llu bytes, or %llu\n", (unsigned long long)all, (unsigned long long)few);
-    assert_true(few < all / 2); /* what is left are the networks of 16 keys */
+    print_message("48 segments take %llu bytes, or %llu with discarding\n", (unsigned long long)all, (unsigned long long)few);
+    assert_true(few < all / 2); /* the networks of 16 keys remain */
     teardown(&other);
 
     adcgs_decoder *whole = NULL;

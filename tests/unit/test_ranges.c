@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Elementary functions and what makes splats, over the whole ranges that the
- * specification's annex of bounds allows them: finite, within these bounds and
- * those of annex "Accuracy", and the same on every CPU level.
+ * Elementary functions and the computation of splats, over the whole ranges of the specification's annex of bounds. Results are
+ * finite, within these bounds and those of annex "Accuracy", and the same on every CPU level.
  */
 #include "config.h"
 
@@ -58,11 +57,11 @@ typedef struct function {
     const char *name;
     float (*computed)(float x);
     double (*exact)(double x);
-    float low, high;     /* its domain, or what of it is not limited first */
-    double places;       /* largest error, in places of the exact result's last digit; 0: says nothing */
-    double error;        /* largest error, relative where that of the result is, else absolute */
+    float low, high;     /* its domain, or the part that is not clamped first */
+    double places;       /* largest error, in places of the exact result's last digit; 0: not specified */
+    double error;        /* largest error, relative or absolute as below */
     int relative;
-    int falls;           /* places that it falls at most where its argument grows; -1: says nothing */
+    int falls;           /* largest fall, in places, while the argument grows; -1: not specified */
 } function;
 
 /* The errors are those of annex "Accuracy", found with every number of these ranges. */
@@ -75,7 +74,7 @@ static const function functions[] = {
     {"opacity_of", ranges_opacity_of, exp2, -0x1.ffa37cp+2f, -0x1p-7f, 54.1, 3.63e-6, 1, 1},
 };
 
-/* The place of a finite number in the order of all of them, and back. */
+/* The index of a finite number in the order of all of them, and its inverse. */
 static int64_t place_of(float x)
 {
     const int64_t magnitude = adcgs_float_bits(x) & 0x7fffffff;
@@ -99,7 +98,7 @@ static void check_value(const function *f, float x, float y)
 {
     const double exact = f->exact(x), error = fabs(y - exact), places = error / digit_of(exact);
     if (!(error <= f->error * (f->relative ? fabs(exact) : 1)) || (f->places > 0 && places > f->places))
-        fail_msg("%s(%a) is %a, expected %a, off by %g or %g places", f->name, (double)x, (double)y, exact, error, places);
+        fail_msg("%s(%a) is %a, expected %a, error %g or %g places", f->name, (double)x, (double)y, exact, error, places);
 }
 
 /* Numbers of the domain in order, `step` places apart. */
@@ -111,12 +110,12 @@ static void check_run(const function *f, int64_t from, int64_t to, int64_t step)
         check_value(f, x, y);
         const int64_t place = place_of(y);
         if (f->falls >= 0 && before > place + f->falls)
-            fail_msg("%s(%a) is %a, less than before", f->name, (double)x, (double)y);
+            fail_msg("%s(%a) is %a, less than for the previous argument", f->name, (double)x, (double)y);
         before = place;
     }
 }
 
-/* Over the whole domain, at its ends and at random places of it number by number. */
+/* Over the whole domain; at its ends and at random places of it, number by number. */
 /* REQ-PRIM-001, REQ-PRIM-002, REQ-PRIM-003, REQ-PRIM-004, REQ-REND-007 */
 static void test_functions(void **state)
 {
@@ -135,7 +134,7 @@ static void test_functions(void **state)
             check_run(f, ADCGS_MAX(from - 300, low), ADCGS_MIN(from + 300, high), 1);
         }
     }
-    for (float x = 0x1p-149f; x < INFINITY; x *= 1.7f) { /* what is limited first, and never leaves its range */
+    for (float x = 0x1p-149f; x < INFINITY; x *= 1.7f) { /* arguments that are clamped first; results never leave their range */
         assert_true(adcgs_exp(x) >= 1 && adcgs_exp(x) <= 0x1p127f && adcgs_exp(-x) >= 0x1p-125f && adcgs_exp(-x) <= 1);
         assert_true(adcgs_sigmoid(x) >= 0.5f && adcgs_sigmoid(x) <= 1 && adcgs_sigmoid(-x) > 0 && adcgs_sigmoid(-x) <= 0.5f);
     }
@@ -155,7 +154,7 @@ static adcgs_strict_fn *strict_at(adcgs_cpu_level level)
     return adcgs_strict_scalar;
 }
 
-/* The known-answer code takes any arguments: operations and functions alike over all exponents, on every level. */
+/* The known-answer code takes any arguments: operations and functions are the same over all exponents, on every level. */
 /* REQ-CONV-007, REQ-CONV-008, REQ-CONF-004 */
 static void test_same_functions(void **state)
 {
@@ -167,21 +166,21 @@ static void test_same_functions(void **state)
         const double low = round & 1 ? -149 : -30, high = round & 1 ? 60 : 20;
         for (int i = 0; i < 3 * SAMPLES; i++)
             in[i / SAMPLES][i % SAMPLES] = (float)ranges_signed(&random, low, high);
-        for (int i = 0; i < SAMPLES; i++) /* what is divided by */
+        for (int i = 0; i < SAMPLES; i++) /* divisors */
             in[1][i] = (float)ranges_size(&random, -126, 20);
         adcgs_strict_scalar(expected, in[0], in[1], in[2]);
         for (adcgs_cpu_level level = ADCGS_CPU_SCALAR; level <= adcgs_cpu_best(); level++) {
             strict_at(level)(got, in[0], in[1], in[2]);
-            const size_t first = round & 1 ? 9 : 0; /* sines of what lies outside of their domain are nobody's */
+            const size_t first = round & 1 ? 9 : 0; /* sines outside of their domain are not specified */
             assert_memory_equal(got[first], expected[first], (ADCGS_STRICT_FUNCTIONS - first) * sizeof got[0]);
             assert_memory_equal(got, expected, 7 * sizeof got[0]);
         }
     }
 }
 
-/* ---- What makes splats ---- */
+/* ---- The computation of splats ---- */
 
-/* What a group of anchors is given: everything at any place of its range. */
+/* The inputs of a group of anchors: each anywhere in its range. */
 typedef struct given {
     _Alignas(64) float sigma[11][L];
     float position[3][L], code[3][L], colour[3][L];
@@ -193,7 +192,7 @@ typedef struct given {
     int octaves, with_bodies, with_fine;
 } given;
 
-/* And what comes of it. */
+/* The results. */
 typedef struct made {
     _Alignas(64) adcgs_anchor_lanes anchor;
     adcgs_slot_lanes slot;
@@ -202,7 +201,7 @@ typedef struct made {
     float code[6 * ADCGS_OCTAVES_MAX * L];
 } made;
 
-/* Where an anchor or a body's centre may be, and the place in the cube. */
+/* A position of an anchor or of a body's centre, and the place in the cube. */
 static float draw_position(uint64_t *random)
 {
     return (float)(ranges_chance(random, 0.5) ? ranges_size(random, -20, 32) : ranges_signed(random, -20, 15));
@@ -220,7 +219,7 @@ static void draw_rows(float (*rows)[L], int n, double low, double high, uint64_t
         rows[i / L][i % L] = (float)ranges_signed(random, low, high);
 }
 
-/* A quaternion as `normalise` leaves it, of components with sizes of their own. */
+/* A quaternion as `normalise` returns it, from components of independent sizes. */
 static void draw_pose(adcgs_body_lanes *b, int l, uint64_t *random)
 {
     float q[4], matrix[9];
@@ -281,7 +280,7 @@ static void make(made *m, const given *g, adcgs_cpu_level level)
     dsp.position_code(m->code, g->code[0], g->octaves);
 }
 
-/* Magnitudes of n numbers; NaN is in no range. */
+/* Checks magnitudes of n numbers; NaN is in no range. */
 static void within(const char *what, const float *x, size_t n, double least, double most)
 {
     for (size_t i = 0; i < n; i++)
@@ -308,7 +307,7 @@ static void check_inside(const made *m, const given *g)
         assert_true(m->rows[ADCGS_ROW_SCALE * L + l % (3 * L)] > 0 && m->rows[ADCGS_ROW_OPACITY * L + l % L] >= 0);
 }
 
-/* Quaternions have length 1 behind up to three rotations in a row, none of which is normalised again: annex "Accuracy". */
+/* Quaternions have length 1 after up to three rotations in a row without normalisation in between: annex "Accuracy". */
 static double farthest;
 static void check_lengths(const made *m)
 {
@@ -318,7 +317,7 @@ static void check_lengths(const made *m)
             n += pow(m->rows[(ADCGS_ROW_ROTATION + c) * L + l], 2);
         farthest = fmax(farthest, fabs(sqrt(n) - 1));
         if (!(fabs(sqrt(n) - 1) <= 2.5e-7))
-            fail_msg("a quaternion of length %.9g", sqrt(n));
+            fail_msg("quaternion of length %.9g, expected 1", sqrt(n));
     }
 }
 
@@ -337,10 +336,10 @@ static void test_splats(void **state)
         for (adcgs_cpu_level level = ADCGS_CPU_SCALAR + 1; level <= adcgs_cpu_best(); level++) {
             make(&got, &g, level);
             if (memcmp(&got, &expected, sizeof got) != 0)
-                fail_msg("round %d: level %d makes other splats", round, (int)level);
+                fail_msg("round %d: splats of level %d differ", round, (int)level);
         }
     }
-    print_message("lengths off by %g\n", farthest);
+    print_message("largest error of a quaternion's length: %g\n", farthest);
 }
 
 int main(void)

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Frames over the whole range of what streams and cameras may hold: cameras
- * inside of splats, behind and beside them, splats below a pixel and beyond the
- * picture, edge-on, at all limits, in hundreds of layers. Each frame is the one
- * that the specification's text yields, at every CPU level, and every number on
- * the way lies within the annex of bounds.
+ * Frames over the whole range of values in streams and cameras: cameras inside, behind and next to splats; splats below a pixel,
+ * beyond the image, edge-on, at all limits, in hundreds of layers. Each frame equals the one by the specification's text, at
+ * every CPU level. Every intermediate number lies within the annex of bounds.
  */
 #include "base/cpu.h"
 #include "unit/ranges.h"
@@ -17,7 +15,7 @@ static double weights_off;
 
 /* ---- Cameras ---- */
 
-/* Any rotation, with as much of an error as is let through, or the axes in another order. */
+/* Any rotation, with an error up to the accepted limit, or the axes in another order. */
 static void draw_rotation(adcgs_camera *c, uint64_t *random)
 {
     double q[4] = {1e-9, 0, 0, 0}, n = 0;
@@ -34,7 +32,7 @@ static void draw_rotation(adcgs_camera *c, uint64_t *random)
         c->cam_to_world[i / 3 * 4 + i % 3] = longer * m[i];
 }
 
-/* One side may be as long as is allowed, where the other is short. */
+/* One side may have the largest allowed length, if the other is short. */
 static void draw_size(adcgs_camera *c, uint64_t *random)
 {
     c->width = 1 + (int)(39 * scene_uniform(random));
@@ -63,7 +61,7 @@ static void draw_camera(adcgs_camera *c, uint64_t *random)
 
 /* ---- Splats ---- */
 
-/* A place that some pixel sees, or one next to the picture, at a depth from just before the near plane on. */
+/* A place that projects to a pixel of the image or next to it, at a depth from just before the near plane on. */
 static void aim(float mean[3], double *depth, const adcgs_camera *c, uint64_t *random)
 {
     const double *const m = c->cam_to_world;
@@ -76,7 +74,7 @@ static void aim(float mean[3], double *depth, const adcgs_camera *c, uint64_t *r
     }
 }
 
-/* Extents that are anything, or that show in the picture at some size, from far below a pixel to far beyond it. */
+/* Arbitrary extents, or extents of some size in the image, from far below a pixel to far beyond the image. */
 static float draw_extent(const adcgs_camera *c, double depth, uint64_t *random)
 {
     const double shown = ranges_size(random, -12, 14) * depth / c->fx;
@@ -84,7 +82,7 @@ static float draw_extent(const adcgs_camera *c, double depth, uint64_t *random)
     return (float)fmin(fmax(extent, 0x1p-20), 0x1p10);
 }
 
-/* Far longer than thick, and not too long for the picture, so that its sides cross many blocks. */
+/* A splat far longer than thick, but not too long for the image, so that its sides cross many blocks. */
 static void make_needle(scene_splats *s, uint32_t i, const adcgs_camera *c, double depth, uint64_t *random)
 {
     const double pixel = depth / c->fx;
@@ -117,13 +115,13 @@ static void draw_splat(scene_splats *s, uint32_t i, const adcgs_camera *c, uint6
     if (ranges_chance(random, 0.3))
         make_needle(s, i, c, depth, random);
     scene_random_rotation(s, i, random);
-    if (ranges_chance(random, 0.2)) /* edge-on to something */
+    if (ranges_chance(random, 0.2)) /* edge-on to some direction */
         for (int a = 0; a < 4; a++)
             scene_array(s, SCENE_ROTATION + a)[i] = a == (int)(i % 4);
     scene_array(s, SCENE_OPACITY)[i] = draw_opacity(random);
 }
 
-/* ---- One frame, as the text has it and at every level ---- */
+/* ---- One frame, by the specification's text and at every level ---- */
 
 typedef struct picture {
     const adcgs_view *view;
@@ -168,7 +166,7 @@ static void expect(const picture *p)
     free(drawn);
 }
 
-/* What is left of the light and what was added of the splats are all of it: annex "Accuracy". */
+/* The remaining light and the weights of the splats sum to 1: annex "Accuracy". */
 static void check_weights(const picture *p)
 {
     const size_t plane = (size_t)p->view->width * (size_t)p->view->height;
@@ -187,7 +185,7 @@ static void check_level(const picture *p, adcgs_cpu_level level)
     memset(p->rgb, 0xff, bytes);
     assert_int_equal(adcgs_raster_forward(raster, p->splats, p->view, p->background, p->filter, p->rgb, 0, NULL), ADCGS_OK);
     if (memcmp(p->rgb, p->expected, bytes) != 0)
-        fail_msg("level %d draws another frame than the text", (int)level);
+        fail_msg("level %d: the frame differs from the one by the specification's text", (int)level);
     assert_int_equal(adcgs_raster_depth(raster, p->splats, p->view, p->filter, p->rgb, NULL), ADCGS_OK);
     check_weights(p);
     adcgs_raster_free(&raster);
@@ -244,14 +242,14 @@ static void test_scenes(void **state)
         check_frame(&view, &p, &random);
         adcgs_free(NULL, s.data);
     }
-    print_message("%d cameras refused; %ld pixels touched; splats %ld drawn, %ld behind, %ld faint, %ld aside, %ld flat\n",
+    print_message("%d cameras refused; %ld pixels changed; splats: %ld rendered, %ld behind, %ld faint, %ld outside, %ld flat\n",
                   refused, touched, verdicts[DRAWN], verdicts[BEHIND], verdicts[FAINT], verdicts[ASIDE], verdicts[FLAT_OR_VAST]);
     assert_true(refused < SCENES / 10 && touched > 20 * SCENES);
     for (int v = 0; v < VERDICTS; v++)
         assert_true(verdicts[v] > SCENES);
 }
 
-/* Layers of one opacity, all over a small picture, at depths of which many are equal; colours at their limits. */
+/* Layers of one opacity all over a small image, many at equal depths; colours at their limits. */
 /* REQ-REND-005, REQ-REND-007, REQ-REND-008, REQ-BNDS-001 */
 static void test_layers(void **state)
 {
@@ -276,7 +274,7 @@ static void test_layers(void **state)
         check_frame(&view, &p, &random);
         adcgs_free(NULL, s.data);
     }
-    print_message("%ld layers over a pixel; weights and what is left add up to 1 within %.3g\n", deepest, weights_off);
+    print_message("%ld layers over a pixel; weights and transmittance sum to 1 within %.3g\n", deepest, weights_off);
     assert_true(deepest >= 500);
 }
 

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The renderer against a pixel-by-pixel evaluation of all splats without any
- * culling (bit for bit) and against the binary64 reference (within a
- * tolerance); on every CPU level, for several numbers of threads; with splats
- * that no scene should hold.
+ * The renderer against a pixel-by-pixel evaluation of all splats without any culling (bit for bit) and against the binary64
+ * reference (within a tolerance); on every CPU level, for several numbers of threads; with splats that no scene should hold.
  */
 #include "base/fmath.h"
 #include "render/sort.h"
@@ -92,7 +90,7 @@ static void render(const scene_splats *s, const adcgs_camera *camera, float filt
     adcgs_pool_free(&pool);
 }
 
-/* Every level and number of threads gives one image, the plain one, of finite numbers. */
+/* Every level and number of threads gives the same image as the plain evaluation, of finite numbers. */
 static void check_scene(const scene_splats *s, const adcgs_camera *camera, float filter)
 {
     static const int threads[] = {1, 2, 7};
@@ -122,7 +120,7 @@ static void test_same_everywhere(void **state)
     check_scene(&s, &c, 0.3f);
     c.cx -= 40.0;
     c.fy *= 1.4;
-    c.cam_to_world[11] = -0.9; /* inside the room: splats behind, at the near plane, and beside it */
+    c.cam_to_world[11] = -0.9; /* inside the room: splats behind, at the near plane, and to the sides */
     check_scene(&s, &c, 0.3f);
     adcgs_free(NULL, s.data);
 }
@@ -210,7 +208,7 @@ static void test_nothing_to_draw(void **state)
     adcgs_free(NULL, hidden.data);
 }
 
-/* A pixel is never -0, whatever the background's sign and colours too small to be seen make of it. */
+/* A pixel is never -0, for any sign of the background and with colours that underflow. */
 /* REQ-REND-008 */
 static void test_zero_has_no_sign(void **state)
 {
@@ -269,7 +267,7 @@ static void test_reference(void **state)
     reference_render(&r, &view, background, 0.3, expected);
     render(&s, &c, 0.3f, ADCGS_CPU_AUTO, 1, rgb, NULL);
     for (size_t i = 0; i < n; i++) {
-        /* Where an alpha is within rounding of 1/255 the two may differ by it. */
+        /* If an alpha is within rounding of 1/255 the two may differ by it. */
         assert_true(fabs(rgb[i] - expected[i]) < 5e-3);
         sum += fabs(rgb[i] - expected[i]);
     }
@@ -280,7 +278,7 @@ static void test_reference(void **state)
     adcgs_free(NULL, s.data);
 }
 
-/* REQ-REND-010. Splats over all of a large image, so many that their pairs would not fit: refused, not tried. */
+/* REQ-REND-010. Splats over all of a large image, so many that their pairs would not fit: refused before rendering. */
 static void test_limits(void **state)
 {
     scene_splats s = scene_create(4096);

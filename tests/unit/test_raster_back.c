@@ -21,7 +21,7 @@ typedef struct frame {
     adcgs_view view;
     size_t pixels;
     float *rgb, *grad;
-    int without_screen; /* screen gradients are not asked for */
+    int without_screen; /* screen gradients are not requested */
 } frame;
 
 static frame frame_create(const adcgs_camera *camera, uint64_t seed)
@@ -128,7 +128,7 @@ static void test_gradients(void **state)
     check_gradients(&c, 12);
 }
 
-/* The splats lie beside a small image, so that the Jacobian's limits act for most of them. */
+/* The splats lie next to a small image, so that the Jacobian's limits apply to most of them. */
 static void test_gradients_limited(void **state)
 {
     adcgs_camera c = scene_camera(6, 7);
@@ -147,7 +147,7 @@ static void test_weight(void **state)
     frame f = frame_create(&c, 5);
     float *grads = grads_create(s.n);
     run(&f, &s, grads, ADCGS_CPU_AUTO, 1);
-    /* The weights and what passes through share out the light of every pixel. */
+    /* The weights and the remaining transmittance sum to the light of every pixel. */
     for (uint32_t i = 0; i < s.n; i++)
         for (int a = 0; a < 3; a++)
             scene_array(&s, SCENE_COLOUR + a)[i] = 1.0f;
@@ -183,7 +183,7 @@ static void test_same_everywhere(void **state)
     frame_free(&f);
 }
 
-/** Screen gradients that nobody asks for are not written, and nothing else changes. */
+/** Screen gradients that are not requested are not written, and nothing else changes. */
 static void test_without_screen(void **state)
 {
     scene_splats s = scene_room(700, 30.0, 8);
@@ -218,8 +218,8 @@ static double inverse_depth(const reference_scene *r, const adcgs_view *v, uint3
 }
 
 /**
- * The energy of distortion.h by the binary64 renderer. still: the first call of a pair, which says what has no gradient: the mean
- * depth, and in cover[pixels] what is covered.
+ * The energy of distortion.h by the binary64 renderer. still: the first call of a pair, which sets the values without a gradient:
+ * the mean depth, and the coverage in cover[pixels].
  */
 static double reference_distortion(reference_scene *r, const frame *f, int n, int still, double *mean, double *cover, double *rgb)
 {
@@ -263,7 +263,7 @@ static void test_distortion(void **state)
     assert_int_equal(adcgs_distortion_add(&distortion, raster, back, &p, &f.view, 0.3f, weight, &g, &energy, NULL), ADCGS_OK);
     reference_scene r = reference_from(&s);
     const double expected = reference_distortion(&r, &f, N, 1, &mean, cover, rgb);
-    assert_true(energy > 0.01); /* layers of a scene that is half as deep as it is far */
+    assert_true(energy > 0.01); /* layers of a scene whose depth is half its distance */
     assert_true(fabs(energy - expected) < 1e-3 * expected);
     for (int array = 0; array < SCENE_COLOUR; array++) {
         double worst = 0.0, largest = 0.0;

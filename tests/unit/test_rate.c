@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The rate that training sees against the coder: after rounding, bits, means
- * and levels of the float twins are those of the integer networks and tables;
- * before, the smooth rate is close to them.
+ * The rate in training against the coder. After rounding, bits, means and levels of the float twins equal those of the integer
+ * networks and tables. Before, the smooth rate is close to them.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -105,7 +104,7 @@ static void count_bits(counter *c, adcgs_model *model)
     adcgs_latents_free(&latents);
 }
 
-/** Whether value i of a parameter group belongs to an anchor, and to a primitive that exists. */
+/** True if value i of a parameter group belongs to an existing anchor and primitive. */
 static int is_coded(const adcgs_fmodel *f, int group, size_t i)
 {
     const size_t rows = (size_t)adcgs_fmodel_rows(f, group), g = i / (rows * 64), row = i / 64 % rows;
@@ -114,7 +113,7 @@ static int is_coded(const adcgs_fmodel *f, int group, size_t i)
     return f->live[g * 64 + i % 64] != 0;
 }
 
-/** The twins' means and bits are the coder's, where its arithmetic is ordinary and where all of it is at its bounds. */
+/** The twins' means and bits equal the coder's, for ordinary arithmetic and where all values are at their bounds. */
 static void twins_are_exact(void **state)
 {
     static const struct { int hidden; double size; } cases[] = { { 1, 0.2 }, { 2, 0.2 }, { 3, 0.1 }, { 1, 3 }, { 2, 30 } };
@@ -139,7 +138,7 @@ static void twins_are_exact(void **state)
         for (int g = 0; g < ADCGS_P_ANCHOR; g++) {
             for (size_t j = 0; j < x.f->param[g].n; j++)
                 if (is_coded(x.f, g, j) && x.pass->mu[g][j] != mu[g][j])
-                    fail_msg("case %zu, %s[%zu]: mean %g, the coder's is %g", i, x.f->param[g].name, j, (double)x.pass->mu[g][j],
+                    fail_msg("case %zu, %s[%zu]: mean %g, the coder has %g", i, x.f->param[g].name, j, (double)x.pass->mu[g][j],
                              (double)mu[g][j]);
             free(mu[g]);
         }
@@ -158,8 +157,8 @@ static void twins_are_exact(void **state)
 }
 
 /**
- * What training sees of rounded values is what the stream holds of them, also of those that it cannot hold: far from zero or
- * from their means, or at level 0.
+ * The rounded values in training equal the stream's, including values that the stream cannot hold: far from zero or from their
+ * means, or at level 0.
  */
 static void rounded_values_are_the_coders(void **state)
 {
@@ -188,7 +187,7 @@ static void rounded_values_are_the_coders(void **state)
     }
 }
 
-/** Steps are widened where, and only where, a value would lie beyond what a stream holds. */
+/** Steps are widened only where a value would be beyond the range of a stream. */
 static void steps_reach_all_values(void **state)
 {
     fixture x;
@@ -205,7 +204,7 @@ static void steps_reach_all_values(void **state)
     clear(&x);
 }
 
-/** Rate measured on a part of the groups each time adds up to all of it, in the noise and after. */
+/** Rates of parts of the groups sum to the rate of all groups, with noise and after rounding. */
 static void parts_add_up(void **state)
 {
     enum { PERIOD = 2 };
@@ -228,7 +227,7 @@ static void parts_add_up(void **state)
     clear(&x);
 }
 
-/** Gradients of the rate alone, of all parameters, with the values as they are or rounded. */
+/** Gradients of the rate alone, for all parameters, with original or rounded values. */
 static void rate_gradients(fixture *x, adcgs_quant quant, float *g[ADCGS_P_COUNT])
 {
     for (int i = 0; i < ADCGS_P_COUNT; i++)
@@ -242,7 +241,9 @@ static void rate_gradients(fixture *x, adcgs_quant quant, float *g[ADCGS_P_COUNT
     }
 }
 
-/** Where a step is small beside sigma, gradients straight through the rounding lead where those of the smooth rate lead. */
+/**
+ * Where steps are small relative to sigma, straight-through gradients of the rounded rate agree with those of the smooth rate.
+ */
 static void exact_gradients_follow_the_smooth_ones(void **state)
 {
     fixture x;
@@ -268,7 +269,7 @@ static void exact_gradients_follow_the_smooth_ones(void **state)
     clear(&x);
 }
 
-/** Each group of channels gets the shape that codes it in the fewest bits: Laplacian values a peaked one. */
+/** Each group of channels gets the shape that codes it in the fewest bits: a peaked one for Laplacian values. */
 static void shapes_fit_the_values(void **state)
 {
     fixture x;
@@ -276,7 +277,7 @@ static void shapes_fit_the_values(void **state)
     adcgs_rate rate;
     counter real;
     make(&x, (adcgs_cpu_level)(uintptr_t)*state, 1, 0, 0);
-    /* Means 0, sigma level 32, which is 2.78 steps. */
+    /* Means 0 and sigma level 32, or 2.78 steps. */
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         for (size_t j = 0; j < x.f->param[i].n; j++) {
             const double u = adcgs_random_unit(5, (uint64_t)i, j) - 0.5;
@@ -319,7 +320,7 @@ static adcgs_rate_cell smooth(const adcgs_train_dsp *dsp, float n, int level)
     return cell;
 }
 
-/** The smooth rate and the tables of the Gaussian agree at every level, in bits and in where these lead. */
+/** The smooth rate and the Gaussian's tables agree at every level, in bits and derivatives. */
 static void smooth_rate_follows_the_tables(void **state)
 {
     adcgs_train_dsp dsp;
@@ -341,7 +342,7 @@ static void smooth_rate_follows_the_tables(void **state)
             const double rounding = 2.5 / (65536 * p); /* of the tables */
             assert_float_equal(s.bits, t.bits, 0.01 + rounding);
             assert_float_equal(s.by_level, t.by_level, 0.01 + 0.2 * fabsf(t.by_level) + rounding);
-            if (level > 28) /* where the slope hardly changes within a step: sigma is above 2 */
+            if (level > 28) /* the slope is nearly constant within a step: sigma is above 2 */
                 assert_float_equal(n < 0 ? -s.by_value : s.by_value, t.by_value, 0.02 + 0.15 * fabsf(t.by_value));
         }
         assert_float_equal(close, real, 0.001 + 0.002 * real);
@@ -349,7 +350,7 @@ static void smooth_rate_follows_the_tables(void **state)
     free(table);
 }
 
-/** Of any shape: nothing is coded at level 0, larger values cost more, and what lies far out pulls its level up. */
+/** For each shape: level 0 codes nothing, larger values cost more, and values far out have a gradient towards a higher level. */
 static void tables_lead_back(void **state)
 {
     (void)state;

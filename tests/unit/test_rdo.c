@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Levels chosen by rate and distortion: the choice of one, its curvature, and what becomes of it in a stream. */
+/** \file Levels chosen by rate and distortion: the choice of one level, its curvature, and the result in a stream. */
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
@@ -46,7 +46,7 @@ static int teardown(void **state)
     return close_scene(state);
 }
 
-/** A trainer of its own in the common state, frozen if wanted. */
+/** A separate trainer in the common state, optionally frozen. */
 static adcgs_trainer *copy(int frozen)
 {
     adcgs_buffer b;
@@ -55,7 +55,7 @@ static adcgs_trainer *copy(int frozen)
     int stopped;
     adcgs_buffer_init(&b);
     assert_int_equal(adcgs_trainer_store(trainer, &b, &error), ADCGS_OK);
-    /* Stopping at once, for the views to be loaded. */
+    /* Stops at once, so that the views are loaded. */
     assert_int_equal(adcgs_trainer_restore(t, b.data, b.size, &error), ADCGS_OK);
     stop = t->iteration + (frozen ? 10 : 0);
     assert_int_equal(adcgs_trainer_run(t, stop_at, &stop, &stopped, &error), ADCGS_OK);
@@ -63,7 +63,7 @@ static adcgs_trainer *copy(int frozen)
     float *h[ADCGS_P_ANCHOR];
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         h[i] = t->f->param[i].v;
-    if (frozen) /* the run itself, which chooses nothing by it, does without */
+    if (frozen) /* the run itself does not measure it, since it chooses nothing by it */
         assert_int_equal(adcgs_curvature_measure(t, h, NULL, &error), ADCGS_OK);
     adcgs_buffer_clear(&b);
     return t;
@@ -76,7 +76,7 @@ static double price(int shape, int si, double wanted, int32_t n, double weight, 
     return weight * (n - wanted) * (n - wanted) + lambda_bit * adcgs_value_cost(shape, si, n) / 65536;
 }
 
-/** No level between is cheaper, whatever the table, and without a price of bits the nearest is taken. */
+/** No level in between is cheaper, for any table. If bits cost nothing, the nearest level is chosen. */
 static void levels_are_the_cheapest(void **state)
 {
     (void)state;
@@ -97,7 +97,7 @@ static void levels_are_the_cheapest(void **state)
 
 /* ---- Curvature ---- */
 
-/** Let the pictures be what the model shows, and noise: the loss is then curved as Gauss and Newton have it. */
+/** Replaces the images by the model's render plus noise: the loss then has the curvature of the Gauss-Newton approximation. */
 static void explain_pictures(adcgs_trainer *t)
 {
     for (uint32_t i = 0; i < t->n_views; i++) {
@@ -114,7 +114,7 @@ static void explain_pictures(adcgs_trainer *t)
 
 enum { PORTIONS = 32 };
 
-/** Move the values of one portion of a group by half a step, up or down as chance has it. */
+/** Loss after moving the values of one portion of a group by half a step, randomly up or down. */
 static double loss_moved(adcgs_trainer *t, int group, uint32_t portion, float direction)
 {
     adcgs_param *p = &t->f->param[group];
@@ -132,7 +132,7 @@ static double loss_moved(adcgs_trainer *t, int group, uint32_t portion, float di
     return loss;
 }
 
-/** Second differences of the loss by portions of a group's values, in sum, to what curvature says of them. */
+/** Ratio of the loss's second differences, summed over portions of a group's values, to the measured curvature. */
 static double seen_by_said(adcgs_trainer *t, int group, const float *h, double still)
 {
     const adcgs_param *p = &t->f->param[group];
@@ -147,7 +147,7 @@ static double seen_by_said(adcgs_trainer *t, int group, const float *h, double s
     return seen / said;
 }
 
-/** Of each group within a factor 2 of the loss's own. */
+/** The curvature of each group is within a factor 2 of the loss's own. */
 static void curvature_is_that_of_the_loss(void **state)
 {
     (void)state;
@@ -164,7 +164,7 @@ static void curvature_is_that_of_the_loss(void **state)
     assert_int_equal(adcgs_sample_loss(t, ADCGS_CURVATURE_VIEWS, 1, &still, &error), ADCGS_OK);
     for (int i = 0; i < ADCGS_P_ETA; i++) {
         const double ratio = seen_by_said(t, i, h[i], still);
-        print_message("%s: the loss bends %.2f times as said\n", f->param[i].name, ratio);
+        print_message("%s: the loss has %.2f times the measured curvature\n", f->param[i].name, ratio);
         assert_true(ratio > 0.5 && ratio < 2);
     }
     for (size_t j = 0; j < f->param[ADCGS_P_ETA].n; j++)
@@ -193,7 +193,7 @@ static uint64_t stream_bytes(const adcgs_trainer *t, adcgs_model *model)
     return n;
 }
 
-/** The bytes foretold are those written; strength costs no more bytes, and going back gives the values of before. */
+/** The predicted bytes equal the written ones. Strength never costs more bytes, and equal strengths give equal values. */
 static void strength_tells_bytes(void **state)
 {
     (void)state;
@@ -223,7 +223,7 @@ static void strength_tells_bytes(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** What was decided for its bits stays as it is through training of the networks, and into the stream. */
+/** Levels chosen for their bits stay unchanged while the networks train, and into the stream. */
 static void decisions_are_kept(void **state)
 {
     (void)state;

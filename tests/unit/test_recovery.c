@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Runs that are given what they cannot thrive on: steps too long, none at all, points that no camera sees, pictures of which
- * nothing is known. They end well, or say why not.
+ * Runs with unsuitable inputs: steps too long, no steps at all, points that no camera sees, images without any known pixel. The
+ * runs end well, or report the reason.
  */
 #include "tiny_scene.h"
 
@@ -14,7 +14,7 @@
 
 /* ---- Steps ---- */
 
-/** What blows the scene apart at once is found out and taken back, until steps are short enough. */
+/** A step that destroys the scene at once is detected and rolled back, until steps are short enough. */
 static void lost_pictures_are_learnt_anew(void **state)
 {
     static const char *const too_long[] = { "learn_prediction=100", "learn_motion=100", "learn_prediction=10" };
@@ -28,12 +28,12 @@ static void lost_pictures_are_learnt_anew(void **state)
             fail_msg("%s: %s", too_long[i], error.text);
         assert_true(i < 2 ? t->rollbacks > 0 : t->rollbacks == 0);
         assert_true(!adcgs_trainer_is_lost(t));
-        assert_true(t->contrast > 0 && t->lambda < (double)config.lambda); /* also where it went back to the beginning */
+        assert_true(t->contrast > 0 && t->lambda < (double)config.lambda); /* also after a rollback to the start */
         adcgs_trainer_free(&t);
     }
 }
 
-/** A rate of 0 leaves a group what it is, and is no reason to give up. */
+/** A learning rate of 0 leaves a group unchanged and is no reason to stop. */
 static void what_does_not_learn_stays(void **state)
 {
     adcgs_train_config config = small_config();
@@ -57,11 +57,11 @@ static void what_does_not_learn_stays(void **state)
     adcgs_trainer_free(&t);
 }
 
-/* ---- Points and pictures ---- */
+/* ---- Points and images ---- */
 
 enum { POINTS = 100 };
 
-/** So many points about a place. */
+/** Puts points around a place. */
 static void put_points(adcgs_scene *s, float at)
 {
     assert_int_equal(adcgs_points_alloc(&s->points, POINTS, "points", &error), ADCGS_OK);
@@ -70,7 +70,7 @@ static void put_points(adcgs_scene *s, float at)
             s->points.position[i][a] = (double)(at + 0.01f * (float)(i * (a + 1) % 10));
 }
 
-/** Points in other units than the poses' would be anchors that no picture says anything of. */
+/** Points in other units than the poses would become anchors that no image constrains. */
 static void points_that_no_camera_sees_are_refused(void **state)
 {
     static const float places[] = { 0, 1000, -20, 1e30f };
@@ -82,13 +82,13 @@ static void points_that_no_camera_sees_are_refused(void **state)
         put_points(&with, places[i]);
         const adcgs_status status = adcgs_trainer_create(&t, &with, &config, adcgs_cpu_best(), pool, &error);
         assert_int_equal(status, i ? ADCGS_ERR_DATA : ADCGS_OK);
-        assert_true(!i || strstr(error.text, "units")); /* of the points, or of what follows from them */
+        assert_true(!i || strstr(error.text, "units")); /* of the points, or of a consequence */
         adcgs_trainer_free(&t);
         adcgs_points_free(&with.points);
     }
 }
 
-/** Pixels that are not known have no part in the contrast, and so none in lambda. */
+/** Unknown pixels do not count in the contrast, and so not in lambda. */
 static void contrast_is_of_what_is_known(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -96,7 +96,7 @@ static void contrast_is_of_what_is_known(void **state)
     double contrast;
     (void)state;
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
-    for (int known = 2; known >= 0; known--) { /* a pixel in so many, which is black or white by turns */
+    for (int known = 2; known >= 0; known--) { /* one in `known` pixels is known, black and white alternately */
         for (uint32_t i = 0; i < t->n_views; i++) {
             const size_t plane = (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
             for (size_t j = 0; j < plane; j++)
@@ -112,7 +112,7 @@ static void contrast_is_of_what_is_known(void **state)
 
 /* ---- Ends ---- */
 
-/** Wherever a run stands it can be made what the stream holds at once, but before it has begun, and where it has diverged. */
+/** A run can be finalised for the stream at any time, except before its first iteration and after it diverged. */
 static void a_run_ends_wherever_it_stands(void **state)
 {
     static const uint32_t stops[] = { 60, 198 };
@@ -151,7 +151,7 @@ static void a_run_ends_wherever_it_stands(void **state)
 
 /* ---- Checkpoints ---- */
 
-/** Spoil what a checkpoint of this run will hold; 0 if there is no such way. */
+/** Corrupts a value that the run's checkpoint will hold; 0 if there is no such case. */
 static int spoil(adcgs_trainer *t, int way)
 {
     adcgs_fmodel *f = t->f;
@@ -178,7 +178,7 @@ static int spoil(adcgs_trainer *t, int way)
     return 1;
 }
 
-/** What no run can have left is refused, as far as later stages would reach beyond an array for it. */
+/** A checkpoint that no run can write is refused, if later stages would index beyond an array because of it. */
 static void impossible_checkpoints_are_refused(void **state)
 {
     const adcgs_train_config config = small_config();

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Runs that fail after their first iteration: the state that is saved leads to the end of a run without the failure. */
+/** \file Runs that fail after their first iteration: the saved state leads to the end of a run without the failure. */
 #include "tiny_scene.h"
 
-static adcgs_buffer end; /* the state at the end of a run that nothing happened to */
+static adcgs_buffer end; /* the state at the end of an undisturbed run */
 
 static void run_to_end(adcgs_trainer *t)
 {
@@ -29,7 +29,7 @@ static int forget_and_close(void **state)
     return close_scene(state);
 }
 
-/** The state that a failed run saves: of an iteration, and a run that continues from it ends as the other did. */
+/** Expects a failed run to save the state of an iteration, and a run that continues from it to end like the undisturbed one. */
 static void expect_rescued(adcgs_trainer *failed, uint32_t iteration)
 {
     const adcgs_train_config config = small_config();
@@ -71,7 +71,7 @@ static void loading_fails(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** An observer: from iteration 20 on an image is away. */
+/** An observer: from iteration 20 on an image is missing. */
 static int take_away(void *user, const adcgs_train_report *r)
 {
     const char *const path = user;
@@ -80,7 +80,7 @@ static int take_away(void *user, const adcgs_train_report *r)
     return 0;
 }
 
-/** Images are kept nowhere, and one cannot be read again. */
+/** Images are not kept, and one cannot be read again. */
 static void an_image_goes_away(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -101,7 +101,7 @@ static void an_image_goes_away(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** A state that cannot be written, near the end, where parameters are averaged, does not change the run. */
+/** A failed save near the end, where parameters are averaged, does not change the run. */
 static void a_full_disk_changes_nothing(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -140,7 +140,7 @@ static adcgs_status quantise_nothing(const adcgs_fmodel *f, const adcgs_quantise
     return adcgs_fail(e, ADCGS_ERR_MEMORY, "out of memory for this");
 }
 
-/** In the middle of a change the state before it counts, if there is one of an iteration. */
+/** In the middle of a change the state before it is saved, if it is that of an iteration. */
 static void a_change_fails(void **state)
 {
     const adcgs_train_config config = small_config();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Pictures of 8 bits a sample against frames and coverage, converted here; strides, rows from the bottom, CPU levels, threads.
+ * Images of 8 bits a sample against frames and coverage, converted here; strides, rows from the bottom, CPU levels, threads.
  */
 #include "config.h"
 
@@ -18,7 +18,7 @@ static uint8_t level_of(double v)
     return (uint8_t)floor((v > 0 ? v < 1 ? v : 1 : 0) * 255 + 0.5);
 }
 
-/** What the picture shall be: from a frame and its coverage, in double; a step apart where rounding decides. */
+/** The expected image: from a frame and its coverage, in double. It may differ by a step where rounding decides. */
 static void expect(const fixture *f, adcgs_decoder *d, adcgs_alpha mode, uint8_t *out)
 {
     float *rgb = calloc(3 * FIXTURE_PIXELS, sizeof *rgb), *alpha = calloc(FIXTURE_PIXELS, sizeof *alpha);
@@ -46,7 +46,7 @@ static void assert_near(const uint8_t *expected, const uint8_t *found, size_t st
     for (size_t y = 0; y < FIXTURE_HEIGHT; y++)
         for (size_t x = 0; x < ROW; x++) {
             const int difference = abs(expected[y * ROW + x] - found[y * stride + x]);
-            /* Straight colours of pixels that hardly anything covers are quotients of rounding errors. */
+            /* Straight colours of pixels with almost no coverage are quotients of rounding errors. */
             if (difference > most && (!coverage || coverage[y * ROW + x / 4 * 4 + 3] > 2))
                 fail_msg("row %zu, byte %zu: %d, expected %d", y, x, found[y * stride + x], expected[y * ROW + x]);
         }
@@ -63,7 +63,7 @@ static void test_modes(void **state)
         assert_int_equal(adcgs_render_rgba8(d, &fixture_camera, TIME, (adcgs_alpha)mode, found, ROW, NULL), ADCGS_OK);
         assert_near(expected, found, ROW, mode == ADCGS_ALPHA_OPAQUE ? 0 : 1, mode == ADCGS_ALPHA_STRAIGHT ? expected : NULL);
         if (mode != ADCGS_ALPHA_OPAQUE)
-            for (size_t i = 0; i < FIXTURE_PIXELS; i++) /* where nothing is, nothing of the background is left */
+            for (size_t i = 0; i < FIXTURE_PIXELS; i++) /* uncovered pixels contain no background */
                 assert_true(expected[4 * i + 3] || !(found[4 * i] | found[4 * i + 1] | found[4 * i + 2]) ||
                             mode == ADCGS_ALPHA_STRAIGHT);
     }

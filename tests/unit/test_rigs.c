@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file LLFF, Neu3D and COLMAP: every convention on a small rig, every kind of bad input, real scenes where they are at hand. */
+/** \file LLFF, Neu3D and COLMAP: every convention on a small rig, every kind of bad input, and real scenes where available. */
 #include "layout_files.h"
 #include "opened_scene.h"
 
@@ -43,7 +43,7 @@ static void test_llff(void **state)
             assert_true(c->width == RIG_WIDTH && c->height == RIG_HEIGHT && c->fx == RIG_FOCAL && c->fy == RIG_FOCAL);
             assert_true(c->cx == 0.5 * RIG_WIDTH && c->cy == 0.5 * RIG_HEIGHT && c->near_plane == 0.5 * 2.01);
         }
-    put_folder("images"); /* full size goes before reduced pictures */
+    put_folder("images"); /* full size has priority over reduced images */
     for (int i = 0; i < 10; i++) {
         char name[64];
         snprintf(name, sizeof name, "images/%d.ppm", i);
@@ -53,7 +53,7 @@ static void test_llff(void **state)
     assert_true(scene->views[ADCGS_SPLIT_TRAIN][0].camera.fx == 2 * RIG_FOCAL);
 }
 
-/** Points of a COLMAP model beside, without those that test views are needed for. */
+/** Points of a COLMAP model next to the poses, except those that depend on test views. */
 static void test_llff_points(void **state)
 {
     put_llff(10, "images");
@@ -61,7 +61,7 @@ static void test_llff_points(void **state)
     put_model_binary("sparse", 10, "%02d.ppm");
     open_good();
     assert_true(scene->points.n == count_kept_points(10, 8) && scene->points.n < RIG_POINTS && scene->points.coloured);
-    unlink(in("sparse/images.bin")); /* the ids 10, 11, ... are then of no picture */
+    unlink(in("sparse/images.bin")); /* the ids 10, 11, ... then belong to no image */
     open_good();
     assert_int_equal(scene->points.n, 0);
 }
@@ -91,7 +91,7 @@ static void test_bad_poses(void **state)
                  {33, 0.5, " and 0.5, expected 0 < near < far"},
                  {33, NAN, " and nan, expected 0 < near < far"},
                  {33, INFINITY, " and inf, expected 0 < near < far <= 1e+09"},
-                 {15, NAN, "row 0: bounds of depth nan and "}, /* of a view for testing */
+                 {15, NAN, "row 0: bounds of depth nan and "}, /* of a test view */
                  {16, 0.5, "row 0: bounds of depth"},
                  {21, 10, "another aspect ratio"},
                  {17, 3, "row 1: the matrix is"}};
@@ -147,10 +147,10 @@ static void test_bad_files(void **state)
     expect_bad(ADCGS_ERR_DATA, "cam01/0.ppm: 24x24", "24x16");
 }
 
-/** Videos at half the size that the poses are for; the first by name is for testing. */
+/** Videos at half the size of the poses. The first by name is for testing. */
 static void test_neu3d(void **state)
 {
-    static const int numbers[] = {0, 2, 10}; /* some are missing, as they are from the published scenes */
+    static const int numbers[] = {0, 2, 10}; /* some are missing, as in the published scenes */
     for (size_t i = 0; i < 3; i++) {
         char name[64];
         snprintf(name, sizeof name, "cam%02d.mp4", numbers[i]);
@@ -226,13 +226,13 @@ static void test_colmap(void **state)
     expect_rig(10);
     assert_int_equal(rename(in("images"), in("input")), 0);
     assert_int_equal(rename(in("sparse/0"), in("elsewhere")), 0);
-    put_model_text("sparse", 10, "%02d.JPG", "# cameras\n\n7 PINHOLE 96 64 80 80 48 32\r\n"); /* other ends, reduced pictures */
+    put_model_text("sparse", 10, "%02d.JPG", "# cameras\n\n7 PINHOLE 96 64 80 80 48 32\r\n"); /* other line ends, small images */
     expect_rig(10);
     unlink(in("sparse/images.txt"));
     expect_bad(ADCGS_ERR_DATA, "sparse/images.txt: no such file", "");
 }
 
-/** Parameters of every kind of camera arrive where they belong. */
+/** Parameters of every kind of camera arrive in the right fields. */
 static void test_kinds_of_cameras(void **state)
 {
     static const struct {
@@ -312,7 +312,7 @@ static void test_bad_text(void **state)
     expect_bad(ADCGS_ERR_DATA, "02.ppm", "no such image");
 }
 
-/** Counts and sizes that the bytes do not hold; every file cut short anywhere. */
+/** Counts and sizes beyond the end of the file; every file cut short anywhere. */
 static void test_bad_binary(void **state)
 {
     static const char *const files[] = {"sparse/cameras.bin", "sparse/images.bin", "sparse/points3D.bin"};
@@ -345,7 +345,7 @@ static void test_bad_binary(void **state)
     expect_bad(ADCGS_ERR_DATA, "points3D.bin: no such file", "");
     const adcgs_scene_options own = {.points_path = in("own.ply")};
     put_text("own.ply", RIG_PLY);
-    expect_good(adcgs_scene_open(&scene, folder, &own, &error)); /* points of one's own take its place */
+    expect_good(adcgs_scene_open(&scene, folder, &own, &error)); /* points given by the user take its place */
     assert_true(scene->points.n == 1);
 }
 
@@ -372,7 +372,7 @@ static void test_colmap_videos(void **state)
 
 /* ---- Real scenes ---- */
 
-/** Depth of a point, and whether the picture holds it. */
+/** Depth of a point; returns whether it is inside the image. */
 static int project(const adcgs_camera *c, const double x[3], double *depth)
 {
     const double *m = c->cam_to_world;
@@ -390,7 +390,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** Of ascending values, on the line between two of them. */
+/** Of ascending values, with linear interpolation. */
 static double percentile(const double *values, size_t n, double share)
 {
     const double at = share * (double)(n - 1);
@@ -399,14 +399,14 @@ static double percentile(const double *values, size_t n, double share)
 }
 
 /**
- * Fern: the points that COLMAP's tracks say an image sees are inside its picture, and their depths at 0.1 and 99.9 % are the
- * bounds, as the layout's makers compute them.
+ * Fern: the points that an image sees by COLMAP's tracks are inside of it. Their depths at 0.1 and 99.9 % are the bounds, as the
+ * layout's authors compute them.
  */
 static void test_fern(void **state)
 {
     expect_good(adcgs_scene_open(&scene, real_data("llff_fern"), NULL, &error));
     assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 17 && scene->n_views[ADCGS_SPLIT_TEST] == 3);
-    assert_int_equal(scene->points.n, 10091 - 980); /* those that fewer than two training views saw are left out */
+    assert_int_equal(scene->points.n, 10091 - 980); /* without those that fewer than two training views saw */
     FILE *file = fopen(real_data("llff_fern/sparse/0/points3D.bin"), "rb");
     static uint8_t data[8 << 20];
     const size_t bytes = fread(data, 1, sizeof data, file);
@@ -432,7 +432,7 @@ static void test_fern(void **state)
             inside += (size_t)project(&scene->views[split][v].camera, x, &depths[image][n[image]++]);
         }
     }
-    assert_true(inside > 0.998 * (double)all); /* the pictures' own lens bends a little: 0.02 r^2 */
+    assert_true(inside > 0.998 * (double)all); /* the images still have a little distortion: 0.02 r^2 */
     for (int i = 0; i < 20; i++) {
         qsort(depths[i], n[i], sizeof(double), compare_doubles);
         const double near = adcgs_bits_double(adcgs_load_le64(poses + 80 + 136 * i + 120));
@@ -460,7 +460,7 @@ static void test_robot(void **state)
     assert_true(c->width == 352 && c->height == 264 && !strcmp(c->name, "cam00"));
 }
 
-/** Hand: the COLMAP model has the cameras of the HyperNeRF files, before these go to working coordinates. */
+/** Hand: the COLMAP model has the cameras of the HyperNeRF files, before these are converted to working coordinates. */
 static void test_hand(void **state)
 {
     const adcgs_scene_options colmap = {.dataset = ADCGS_DATASET_COLMAP};
@@ -485,7 +485,7 @@ static void test_hand(void **state)
                 compared++;
             }
     assert_int_equal(compared, 75);
-    /* Points are in the same order: two of them give the scale, which then holds for all, and for cameras too. */
+    /* Points are in the same order. Two of them give the scale, which then holds for all points and cameras. */
     for (int k = 0; k < 3; k++)
         scale += pow(scene->points.position[0][k] - scene->points.position[9][k], 2);
     double length = 0.0;

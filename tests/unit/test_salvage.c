@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Damaged streams: what nothing is wrong with is read as ever; bits, bytes and pieces that are wrong, missing or doubled are
- * told, and what is used of the rest is what was written.
+ * Damaged streams. Intact streams are read as usual. Wrong, missing or doubled bits, bytes and pieces are reported, and the used
+ * rest equals the original.
  */
 #include "stream_fixture.h"
 
@@ -58,7 +58,7 @@ static adcgs_status salvage(adcgs_stream *out, adcgs_buffer *bytes, uint32_t *fa
     return status;
 }
 
-/** The segment that was written with these times; -1 if there is none. */
+/** The segment that was written with these times; -1 if none. */
 static int number_of(const fixture *f, const adcgs_model *m)
 {
     for (int i = 0; i < SEGMENTS; i++)
@@ -67,7 +67,9 @@ static int number_of(const fixture *f, const adcgs_model *m)
     return -1;
 }
 
-/** Every model that all layers and tiers of came is the one that was written. Returns how many are there; *whole: so many are. */
+/**
+ * Expects every model with all layers and tiers to equal the written one. Returns the number of models; *whole: of complete ones.
+ */
 static uint32_t check_models(const fixture *f, const adcgs_stream *s, uint32_t *whole)
 {
     *whole = 0;
@@ -101,7 +103,7 @@ static void test_whole(void **state)
     assert_int_equal(check_models(f, &s, &whole), SEGMENTS);
     assert_int_equal(whole, SEGMENTS);
     assert_false(s.truncated);
-    adcgs_buffer_init(&again); /* what is repaired is what was */
+    adcgs_buffer_init(&again); /* the repaired stream equals the original */
     assert_int_equal(adcgs_stream_write(&s, &again, NULL), ADCGS_OK);
     assert_int_equal(again.size, f->bytes.size);
     assert_memory_equal(again.data, f->bytes.data, again.size);
@@ -109,7 +111,7 @@ static void test_whole(void **state)
     adcgs_stream_clear(&s, NULL);
 }
 
-/** Where the chunk of a type begins that belongs to a segment, and its length with header and checksum. */
+/** Offset of the chunk of a type and a segment; its length with header and checksum. */
 static size_t chunk_at(const adcgs_buffer *b, uint32_t type, int segment, size_t *length)
 {
     for (size_t at = ADCGS_SIGNATURE_BYTES; at < b->size; at += *length) {
@@ -121,7 +123,7 @@ static size_t chunk_at(const adcgs_buffer *b, uint32_t type, int segment, size_t
     return 0;
 }
 
-/** One bit of a chunk's payload is wrong: so many segments are left, so many of them whole. */
+/** Flips one bit of a chunk's payload and expects this many segments, and this many complete ones. */
 static void check_bit(const fixture *f, uint32_t type, int segment, uint32_t left, uint32_t whole_left)
 {
     adcgs_buffer b;
@@ -135,7 +137,7 @@ static void check_bit(const fixture *f, uint32_t type, int segment, uint32_t lef
     assert_true(faults > 0);
     assert_int_equal(check_models(f, &s, &whole), left);
     assert_int_equal(whole, whole_left);
-    /* What is repaired has no faults, and the same models. */
+    /* The repaired stream has no faults, and the same models. */
     adcgs_buffer repaired;
     adcgs_stream again;
     adcgs_buffer_init(&repaired);
@@ -160,7 +162,7 @@ static void test_what_is_lost(void **state)
     check_bit(f, ADCGS_TYPE_INDX, 0, 8, 8);
     check_bit(f, ADCGS_TYPE_ENDC, 0, 8, 8);
     check_bit(f, ADCGS_TYPE_hash, 4, 8, 8);
-    check_bit(f, ADCGS_TYPE_FEA(2), 0, 8, 5); /* what is predicted from it has a part concealed as well */
+    check_bit(f, ADCGS_TYPE_FEA(2), 0, 8, 5); /* the segments predicted from it have a concealed part as well */
     check_bit(f, ADCGS_TYPE_FEA(1), 5, 8, 7);
     check_bit(f, ADCGS_TYPE_FEA(0), 0, 5, 5);
     check_bit(f, ADCGS_TYPE_FEA(0), 1, 6, 6);
@@ -170,7 +172,7 @@ static void test_what_is_lost(void **state)
     check_bit(f, ADCGS_TYPE_SEGM, 7, 7, 7);
 }
 
-/** A piece is missing, doubled, or not of the stream, in the middle: only what it touches is lost. */
+/** A piece in the middle is missing, doubled or foreign: only the data that it touches is lost. */
 static void test_pieces(void **state)
 {
     const fixture *f = *state;
@@ -197,7 +199,7 @@ static void test_pieces(void **state)
     }
 }
 
-/** Bytes anywhere are wrong, few or many: no model is another than was written and passes for whole. */
+/** A few or many wrong bytes anywhere: no model that differs from the written one passes as complete. */
 static void test_bytes(void **state)
 {
     const fixture *f = *state;
@@ -220,7 +222,7 @@ static void test_bytes(void **state)
     assert_true(saved > 300); /* of 2,400 */
 }
 
-/** Headers within headers, each of a chunk that claims all that follows, take no time without end. */
+/** Nested headers, each of a chunk that claims all following bytes, need bounded time. */
 static void test_nested(void **state)
 {
     const fixture *f = *state;
@@ -241,7 +243,7 @@ static void test_nested(void **state)
     adcgs_buffer_clear(&b);
 }
 
-/** The decoder's own way to it. */
+/** The same through the decoder's option. */
 static void test_decoder(void **state)
 {
     const fixture *f = *state;
@@ -263,7 +265,7 @@ static void test_decoder(void **state)
     adcgs_buffer_clear(&b);
 }
 
-/** How much may be of use: the level says, once its header is there and right. */
+/** The number of useful bytes follows from the level, as soon as a valid header is present. */
 static void test_useful_bytes(void **state)
 {
     const fixture *f = *state;

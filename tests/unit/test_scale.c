@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Scenes in other units are the same scenes: by powers of two to the last bit, else but for what rounding makes of training.
+ * Scenes in other units train the same: to the last bit for powers of two, otherwise except for rounding.
  */
 #include "tiny_scene.h"
 
@@ -16,21 +16,21 @@
 
 #include <math.h>
 
-/** What a short run in some units comes to. */
+/** The result of a short run in some units. */
 typedef struct result {
-    double psnr, decoded;  /**< of training views; of test views from the stream */
+    double psnr, decoded;  /**< PSNR of training views; PSNR of test views from the stream */
     double near_plane, scale; /**< in the original units */
     uint32_t anchors;
     float *colours;        /**< of the anchors */
     size_t n_colours;
 } result;
 
-/** Write a file of transforms anew with all translations times a factor. */
+/** Rewrites a file of transforms with all translations multiplied by a factor. */
 static void scale_file(const char *name, double factor)
 {
     char path[600], whole[610];
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    snprintf(whole, sizeof whole, "%s.whole", path); /* as it was */
+    snprintf(whole, sizeof whole, "%s.whole", path); /* the original file */
     json_t *root = json_load_file(whole, 0, NULL), *frame;
     if (!root) {
         assert_int_equal(rename(path, whole), 0);
@@ -109,7 +109,7 @@ static void units_do_not_matter(void **state)
         double factor;
         int exact;
     } rows[] = { { 0x1p-20, 1 }, { 0x1p-13, 1 }, { 0x1p13, 1 }, { 0x1p20, 1 }, { 1e-6, 0 }, { 1e-4, 0 }, { 1e4, 0 }, { 1e6, 0 } };
-    unlink(in("points3d.ply")); /* else they say in which units they are */
+    unlink(in("points3d.ply")); /* else the points determine the units */
     const result one = train_scaled(1);
     if (!(one.psnr > 12 && one.decoded > 12))
         fail_msg("%g and %g dB", one.psnr, one.decoded);
@@ -128,11 +128,11 @@ static void units_do_not_matter(void **state)
     free(one.colours);
 }
 
-/* ---- Cameras that do not say how far things are ---- */
+/* ---- Cameras without evidence of distance ---- */
 
 enum { VIEWS = 5 };
 
-/** Views of a camera array, or of a panorama, in some units, with points or without. */
+/** Views of a camera array, or of a panorama, in some units, with or without points. */
 static void put_views(adcgs_scene *s, adcgs_scene_view views[VIEWS], int panorama, double factor)
 {
     memset(views, 0, VIEWS * sizeof *views);
@@ -150,7 +150,7 @@ static void put_views(adcgs_scene *s, adcgs_scene_view views[VIEWS], int panoram
     s->views[ADCGS_SPLIT_TRAIN] = views;
 }
 
-/** Parallel cameras, and cameras in one place: what stands for their distance from things goes with the units, too. */
+/** Parallel cameras, and cameras in one place: the assumed distance of the scene scales with the units, too. */
 static void frames_go_with_units(void **state)
 {
     static const double factors[] = { 0x1p-30, 0x1p-20, 0x1p20, 0x1p30 };
@@ -178,7 +178,7 @@ static void frames_go_with_units(void **state)
             if (i < 0) {
                 memcpy(origin, x, sizeof x);
                 scale = length;
-            } else if (points || bound || !panorama) { /* else nothing has a length, and the unit is as good as any */
+            } else if (points || bound || !panorama) { /* else nothing has a length, and any unit is right */
                 assert_true(length == factor * scale);
                 for (int a = 0; a < 3; a++)
                     assert_true(fabs(x[a] - factor * origin[a]) <= 1e-12 * length);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Scenes: both layouts, conventions, every kind of bad input, real scenes where they are at hand. */
+/** \file Scenes: both layouts, conventions, every kind of bad input, and real scenes where available. */
 #include "outside_files.h"
 
 #include "data/pose.h"
@@ -83,7 +83,7 @@ static void test_single(void **state)
     const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
     assert_true(c->width == 6 && c->height == 4 && c->fx == 7.0 && c->fy == 7.0 && c->cx == 1.5 && c->cy == 2.25);
     assert_string_equal(c->name, "b");
-    /* OpenGL looks along -z: in OpenCV axes x stays, y and z turn round; the centre stays. */
+    /* OpenGL looks along -z: in OpenCV axes x stays, y and z are inverted; the centre stays. */
     const double expected[12] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 4};
     for (int i = 0; i < 12; i++)
         assert_true(c->cam_to_world[i] == expected[i]);
@@ -145,22 +145,22 @@ static void expect_time(const char *train, const char *test, uint32_t num, uint3
     adcgs_scene_free(&scene);
 }
 
-/** All splits tell together when there were frames, and any of them at which rate. */
+/** All splits together determine the frame times; any of them the frame rate. */
 static void test_duration(void **state)
 {
     const char *const ends = ",\"frames\":[" TIMED("0") "," TIMED("1");
     /* Every third frame is for testing; six digits are enough. */
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.166667") "," TIMED("0.5") "," TIMED("0.666667") "," TIMED("1"),
                 ",\"frames\":[" TIMED("0.333333") "," TIMED("0.833333"), 30, 1, 6);
-    /* So are the last ones. */
+    /* The last frames are for testing. */
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("0.5"), ",\"frames\":[" TIMED("0.75") "," TIMED("1"),
                 30, 1, 4);
-    /* Between frames that lack none: no more of them. */
+    /* Test frames between evenly spaced training frames add no intervals. */
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.5") "," TIMED("1"), ",\"frames\":[" TIMED("0.25") "," TIMED("0.75"),
                 30, 1, 2);
-    /* Nobody shows the third of four intervals' end. */
+    /* No view is at the end of the third of four intervals. */
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("1"), ",\"frames\":[" TIMED("0.5"), 30, 1, 4);
-    /* Moments of its own, as D-NeRF's test views have: three intervals of training, not seventeen or five. */
+    /* Test views with times of their own, as in D-NeRF: the three intervals of training count, not seventeen or five. */
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.3333333") "," TIMED("0.6666667") "," TIMED("1"),
                 ",\"frames\":[" TIMED("0.41") "," TIMED("0.77"), 30, 1, 3);
     expect_time(ends, ",\"fps\":29.97,\"frames\":[" TIMED("0.5"), 30000, 1001, 1);
@@ -174,14 +174,14 @@ static void test_duration(void **state)
     unlink(in("transforms_test.json"));
 }
 
-/** Where the mask is black, nothing is seen: neither in a pixel nor, when it is reduced, in an average. */
+/** Black areas of the mask are unknown, in a pixel and in the average of a reduced one. */
 static void test_mask(void **state)
 {
     adcgs_image mask;
     float *rgb;
     adcgs_camera camera;
     assert_int_equal(adcgs_image_alloc(&mask, 6, 4, 1, "m", &error), ADCGS_OK);
-    for (int i = 0; i < 6 * 4; i++) /* the last three columns, and of the second pair of them one pixel */
+    for (int i = 0; i < 6 * 4; i++) /* the last three columns, and one pixel of the second pair */
         mask.data[i] = i % 6 < 3 && i != 8 ? 1.0f / 255.0f : 0.0f;
     expect_good(adcgs_image_write(&mask, in("m.pgm"), 0, &error));
     expect_good(adcgs_image_write(&mask, in("m.tif"), 0, &error));
@@ -221,7 +221,7 @@ static void test_mask(void **state)
     const char *const narrow = "{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "%s") "," FRAME("b.ppm", "%s") "]}";
     char json[1000];
     snprintf(json, sizeof json, narrow, "", ",\"mask_path\":\"m.pgm\"");
-    expect_good(open_single(json)); /* pictures for training are looked at when they are loaded */
+    expect_good(open_single(json)); /* images for training are checked when they are loaded */
     expect_error(adcgs_scene_load(scene, scene->views[ADCGS_SPLIT_TRAIN], 1, &rgb, NULL, &error), ADCGS_ERR_DATA, "m.pgm: 5x4",
                  "6x4");
     adcgs_scene_free(&scene);
@@ -229,7 +229,7 @@ static void test_mask(void **state)
     expect_error(open_single(json), ADCGS_ERR_DATA, "m.pgm: 5x4", "6x4");
 }
 
-/** What is known to move: any colour but black; for measuring, so that the picture itself stays as it is. */
+/** The motion mask: any colour but black moves. It is for measurements, so that the image itself stays unchanged. */
 static void test_moving(void **state)
 {
     adcgs_image mask;
@@ -316,7 +316,7 @@ static void test_bad_files(void **state)
     expect_bad("{\"ply_file_path\":1,\"frames\":[]}", ADCGS_ERR_DATA, "ply_file_path", "string");
 }
 
-/** One good frame, then one with the fields given. */
+/** One good frame, then one with the given fields. */
 static void expect_bad_frame(const char *fields, adcgs_status status, const char *field, const char *what)
 {
     char json[1024], place[64];
@@ -393,7 +393,7 @@ static void test_bad_poses(void **state)
     assert_string_equal(adcgs_pose_from_opengl(infinite), "holds a value that is not finite");
 }
 
-/** Rounding of poses is mended to orthonormal. */
+/** Poses with rounding errors are made orthonormal. */
 static void test_straightening(void **state)
 {
     double pose[12] = {0.8003, -0.6, 0.0, 1, 0.6001, 0.7998, 0.0002, 2, -0.0003, 0.0, 1.0001, 3};
@@ -418,7 +418,7 @@ static void test_mixed_times(void **state)
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms_test.json", "empty");
 }
 
-/** One byte of a good file at a time gets another value, or the file ends there: never a crash, always a reason. */
+/** Replaces one byte of a good file at a time, or ends the file there: never a crash, always a reason. */
 static void test_mutations(void **state)
 {
     static const char good[] = "{\"w\":6,\"h\":4,\"fl_x\":5,\"k1\":0,\"ply_file_path\":\"points3d.ply\",\"frames\":["
@@ -461,7 +461,7 @@ static void test_robot(void **state)
     adcgs_scene_free(&scene);
 }
 
-/** The initial points, which were triangulated, fall inside the pictures of cameras with their own intrinsics. */
+/** The triangulated initial points are inside the images of cameras with their own intrinsics. */
 static void test_ring(void **state)
 {
     check_real("zju313_15f", 255, 30, 30, 15, 512);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The adcgs scene file: every field, every kind of bad input, a real calibration where it is at hand. */
+/** \file The adcgs scene file: every field, every kind of bad input, and a real calibration where available. */
 #include "layout_files.h"
 
 #include "layouts/open.h"
@@ -53,7 +53,7 @@ static const adcgs_scene_view *train(uint32_t i)
     return &scene->views[ADCGS_SPLIT_TRAIN][i];
 }
 
-/** A pose in each way of giving one. */
+/** A pose in each supported form. */
 static void test_poses(void **state)
 {
     for (int i = 0; i < 5; i++)
@@ -66,7 +66,7 @@ static void test_poses(void **state)
                     inverse[4 * a + b] = pose[4 * b + a];
                 inverse[4 * a + 3] = -(pose[a] * pose[3] + pose[4 + a] * pose[7] + pose[8 + a] * pose[11]);
             }
-            double gl[12]; /* world to camera in OpenGL axes: rows of y and z are turned */
+            double gl[12]; /* world to camera in OpenGL axes: rows of y and z are inverted */
             for (int k = 0; k < 12; k++)
                 gl[k] = k < 4 ? inverse[k] : -inverse[k];
             const double *v = inverse;
@@ -112,7 +112,7 @@ static void test_intrinsics(void **state)
     assert_true(l->is_fisheye && l->k[0] == 0.01 && l->k[1] == 0.02 && l->k[2] == 0 && l->k[3] == 0.04 && l->width == 24);
 }
 
-/** Seconds: offsets, rates of their own, and test frames before and after what is trained on. */
+/** Seconds: offsets, different rates, and test frames before and after the trained times. */
 static void test_times(void **state)
 {
     open_good(FILE_OF(",\"frame_rate\":10,\"unit\":\"metre\",\"up\":\"z\",\"name\":\"times\"",
@@ -237,8 +237,8 @@ static char *rows_of(json_t *matrix)
 }
 
 /**
- * The published calibration of zju313_15f, put into a scene file as it is: K for 1024x1024 with pixel centres at integers, R
- * and T in millimetres. Its cameras and times are those of the transforms files.
+ * The published calibration of zju313_15f, put into a scene file unchanged: K for 1024x1024 with pixel centres at integers, R and
+ * T in millimetres. Its cameras and times equal those of the transforms files.
  */
 static void test_calibration(void **state)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The scene's frame of reference lies where the cameras look, however they look. */
+/** \file The scene's frame of reference is centred on the place at which the cameras look, for any directions. */
 #include "outside_files.h"
 
 #include "train/scene_frame.h"
@@ -27,7 +27,7 @@ static void place(adcgs_camera *camera, const double c[3], const double d[3])
     }
 }
 
-/** Cameras along x from -1 to 1 that look along z, each turned outwards by so much for its x. */
+/** Cameras along x from -1 to 1 that look along z, each turned outwards in proportion to its x. */
 static void sweep(double outwards)
 {
     for (int i = 0; i < VIEWS; i++) {
@@ -58,7 +58,7 @@ static void find(double origin[3], double *scale)
     scene.points.position = NULL;
 }
 
-/** Axes that meet behind the cameras, nowhere near the things seen, or far beyond them: the focus is on the things. */
+/** Axes that meet behind the cameras, far from the visible points, or far beyond them: the focus is on the points. */
 static void focus_is_on_what_is_seen(void **state)
 {
     static const double outwards[] = { 0.02, 0.2, -0.02, 0 };
@@ -74,7 +74,7 @@ static void focus_is_on_what_is_seen(void **state)
     }
 }
 
-/** Axes that meet among the things are believed, to the last bit, whatever the points. */
+/** Axes that meet among the points determine the focus, to the last bit, for any points. */
 static void inward_axes_are_believed(void **state)
 {
     double with[3], without[3], scale[2];
@@ -87,7 +87,7 @@ static void inward_axes_are_believed(void **state)
     assert_float_equal(with[2], 4, 1e-9);
 }
 
-/** Without points, the focus is in front of every camera all the same. */
+/** Without points, the focus is still in front of every camera. */
 static void focus_is_in_front_without_points(void **state)
 {
     double origin[3], scale;
@@ -99,7 +99,7 @@ static void focus_is_in_front_without_points(void **state)
     }
 }
 
-/** Cameras in a ring that look outwards: their middle is the focus, and what they see is not far beyond the unit. */
+/** Cameras in a ring that look outwards: their middle is the focus, and the visible points are not far beyond the unit. */
 static void outward_rings_have_units_of_what_is_seen(void **state)
 {
     double origin[3], scale;

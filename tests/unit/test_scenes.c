@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The scene generator: its arithmetic, its independence of threads, and what its table promises. */
+/** \file The scene generator: its arithmetic, its independence of threads, and the properties that its table promises. */
 #include "scenes/scenes.h"
 #include "scenes/sine.h"
 #include "scenes/table.h"
@@ -65,7 +65,7 @@ static void pictures_have_content(void **state)
     assert_true(change > 0.005 && change < 0.2);
 }
 
-/* A camera that looks at the target from the front, for pictures of size x size. */
+/* A camera that looks at the target from the front, for images of size x size. */
 static adcgs_trace_camera front(int size)
 {
     adcgs_trace_camera camera = {.focal = 0.5 * ADCGS_SCENES_FOCAL * size};
@@ -74,7 +74,7 @@ static adcgs_trace_camera front(int size)
     return camera;
 }
 
-/* Where what moves in a scene covers that camera's picture. */
+/* Coverage of that camera's image by the scene's moving objects. */
 static void cover(const adcgs_scenes_entry *scene, double time, int size, int samples, float *out)
 {
     const adcgs_trace_camera camera = front(size);
@@ -82,7 +82,7 @@ static void cover(const adcgs_scenes_entry *scene, double time, int size, int sa
                                        out, NULL), ADCGS_OK);
 }
 
-/* Picture of cross20 from the same place, one ray for each pixel, its box of one grey and without a pattern. */
+/* Image of cross20 from the same place, one ray per pixel, with its box in one grey and without a pattern. */
 static void paint(float grey, float *rgb)
 {
     const adcgs_scenes_entry *const scene = adcgs_scenes_entry_find("cross20");
@@ -97,7 +97,7 @@ static void paint(float grey, float *rgb)
     assert_int_equal(adcgs_trace_render(objects, scene->n_objects, &camera, 0.4, SIZE, SIZE, 1, NULL, rgb, NULL), ADCGS_OK);
 }
 
-/* A thing is seen where its colour shows. */
+/* An object covers exactly the pixels where its colour is visible. */
 static void covered_is_what_is_seen(void **state)
 {
     static float black[FLOATS], white[FLOATS], mask[FLOATS];
@@ -115,7 +115,7 @@ static void covered_is_what_is_seen(void **state)
     assert_int_equal(adcgs_trace_cover(NULL, 0, 1, &camera, 0.0, 1, 1, 99, NULL, mask, NULL), ADCGS_ERR_USAGE);
 }
 
-/* Samples of a pixel are the pixels of a finer picture; half of them are enough. */
+/* The samples of a pixel are the pixels of a finer image. A pixel is covered if at least half of them are. */
 static void half_of_the_samples_cover(void **state)
 {
     static float mask[FLOATS], fine[9 * FLOATS];
@@ -139,7 +139,7 @@ static void half_of_the_samples_cover(void **state)
 
 enum { LARGE = 120 };
 
-/* Mean column of what moves, as a share of the width, and how many pixels it has. */
+/* Mean column of the moving objects, as a share of the width, and their number of pixels. */
 static double middle(const char *name, double time, int *n)
 {
     static float mask[LARGE * LARGE];
@@ -154,7 +154,7 @@ static double middle(const char *name, double time, int *n)
     return *n ? sum / *n / LARGE : 0.5;
 }
 
-/* They go as far as their names say, and nobody hides for long. */
+/* Objects cross as far as the names say, and are never hidden for long. */
 static void crossings_are_as_long_as_they_say(void **state)
 {
     static const int percent[] = {5, 20, 80};
@@ -183,7 +183,7 @@ static double difference(const char *name, double time, double other)
     return sum;
 }
 
-/* After a whole turn all is as it was; in between no part of a turn looks like another. */
+/* After a whole turn the image is as before. In between, no part of a turn looks like another. */
 static void boxes_turn_as_often_as_they_say(void **state)
 {
     (void)state;
@@ -195,7 +195,7 @@ static void boxes_turn_as_often_as_they_say(void **state)
     }
 }
 
-/* Before its time a thing casts no shadow either: without it the picture is the same, to the bit. */
+/* Before an object appears it casts no shadow either: without the object the image is the same, to the bit. */
 static void what_appears_was_not_there(void **state)
 {
     static float before[FLOATS], without[FLOATS], after[FLOATS];
@@ -215,7 +215,7 @@ static void what_appears_was_not_there(void **state)
     assert_true(n > 250);
 }
 
-/* Columns without anything that moves, between the first and the last that has some. */
+/* Number of columns without moving objects, between the first and the last column with some. */
 static int gap(double time)
 {
     static float mask[LARGE * LARGE];
@@ -240,7 +240,7 @@ static void halves_come_apart(void **state)
     assert_in_range(gap(1.0), 30, 50);
 }
 
-/* A ball that is stretched along x and pressed along z at a quarter of its beat, and as it was at half. */
+/* A ball that is stretched along x and compressed along z at a quarter of its period, and back in shape at half. */
 static void what_is_soft_changes_its_shape(void **state)
 {
     static float mask[3][LARGE * LARGE];
@@ -264,7 +264,7 @@ static void what_is_soft_changes_its_shape(void **state)
     assert_memory_equal(mask[0], mask[2], sizeof mask[0]);
 }
 
-/* What cannot be had is said; what can is looked at where the program writes it (tests/cli/test_enc.sh). */
+/* Impossible options are errors. Valid ones are tested by tests/cli/test_enc.sh. */
 static void wrong_counts_are_refused(void **state)
 {
     static const struct {
@@ -292,7 +292,7 @@ static void table_is_sound(void **state)
         assert_true((scene->path == ADCGS_PATH_HAND) == (scene->swings > 0) && scene->cameras * scene->times > 1);
         assert_true(scene->times > 1 || !scene->moving);
         for (int k = 0; k < scene->n_objects; k++)
-            assert_true(scene->objects[k].from == 0.0 || scene->moving >> k & 1); /* what moves not is always there */
+            assert_true(scene->objects[k].from == 0.0 || scene->moving >> k & 1); /* a static object is always present */
     }
     assert_null(adcgs_scenes_entry_find("no such scene"));
     assert_int_equal(adcgs_scenes_count("no such scene"), 0);

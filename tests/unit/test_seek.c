@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Reading on demand: what a seeker gives is what reading the whole stream gives, in any order; it reads no more than it has to,
- * holds one segment, or two that are faded one into the other, and is as hard to fool.
+ * Reading on demand: a seeker gives the same result as reading the whole stream, in any order. It reads only the necessary bytes,
+ * holds one segment, or two during a crossfade, and detects damage as well.
  */
 #include "stream_fixture.h"
 
@@ -16,13 +16,13 @@
 
 enum { SEGMENTS = 9 };
 
-/** A stream in memory that can be read anywhere, and tells what was read. */
+/** A stream in memory that can be read anywhere and counts the bytes read. */
 typedef struct source {
     const uint8_t *data;
     size_t size;
     uint64_t bytes;
     uint64_t fails_at; /* byte that cannot be read; 0: all can */
-    size_t piece;      /* bytes at a time at most */
+    size_t piece;      /* maximum bytes per read */
 } source;
 
 static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
@@ -76,7 +76,7 @@ static void check_segment(adcgs_decoder *d, const fixture *f, int segment)
     assert_memory_equal(digest, digests[segment], sizeof digest);
 }
 
-/** Any order, forwards, backwards and again; models and splats are those of the whole stream. */
+/** Any order, forwards, backwards and again: models and splats are those of the whole stream. */
 static void test_any_order(void **state)
 {
     const fixture *f = *state;
@@ -106,7 +106,7 @@ static void test_any_order(void **state)
     adcgs_close(&d);
 }
 
-/** Where chunks of the stream lie: what stands before segment i ends at begin[i], and the last segment at begin[SEGMENTS]. */
+/** Offsets of the segments' chunks: the data before segment i ends at begin[i], and the last segment at begin[SEGMENTS]. */
 static void find_segments(const adcgs_buffer *bytes, size_t begin[SEGMENTS + 1])
 {
     size_t n = 0;
@@ -118,7 +118,10 @@ static void find_segments(const adcgs_buffer *bytes, size_t begin[SEGMENTS + 1])
     assert_int_equal(n, SEGMENTS + 1);
 }
 
-/** The header, the index, and the segment with those back to its key: no other byte; and going on reads the next alone. */
+/**
+ * Opening reads the header and the index, seeking the segments back to the key, and nothing else. Continuing reads the next
+ * segment alone.
+ */
 static void test_bytes_read(void **state)
 {
     const fixture *f = *state;
@@ -130,7 +133,7 @@ static void test_bytes_read(void **state)
         source s = source_of(&f->bytes);
         uint8_t digest[16];
         adcgs_decoder *d = open_on_demand(&s);
-        /* Headers of chunks are looked at before a chunk is read: 16 bytes each, once more. */
+        /* Headers of chunks are read before the chunks: 16 bytes each, twice. */
         const uint64_t opened = s.bytes, most_headers = 16 * 64;
         assert_in_range(opened, front, front + most_headers);
         assert_int_equal(adcgs_get_splat_digest(d, 0.001 * (40 * i + 1), digest, NULL), ADCGS_OK);
@@ -150,7 +153,7 @@ static void test_bytes_read(void **state)
     }
 }
 
-/** Bytes of a stream without one of its chunks; no checksum tells. */
+/** Copies a stream without one of its chunks. No checksum detects this. */
 static void leave_out(adcgs_buffer *to, const adcgs_buffer *from, size_t begin, size_t end)
 {
     adcgs_buffer_init(to);
@@ -158,7 +161,7 @@ static void leave_out(adcgs_buffer *to, const adcgs_buffer *from, size_t begin, 
     adcgs_write_bytes(to, from->data + end, from->size - end);
 }
 
-/** Without an index, or with one that is damaged or not where it should be, headers of chunks tell where segments are. */
+/** If the index is missing, damaged or misplaced, headers of chunks are used to find the segments. */
 static void test_no_index(void **state)
 {
     const fixture *f = *state;
@@ -183,7 +186,7 @@ static void test_no_index(void **state)
     adcgs_buffer_clear(&bytes);
 }
 
-/** What is damaged is refused when it is asked for; the rest goes on being there. */
+/** A damaged segment is an error when it is requested. The others stay available. */
 static void test_damage(void **state)
 {
     const fixture *f = *state;
@@ -210,7 +213,7 @@ static void test_damage(void **state)
     adcgs_buffer_clear(&bytes);
 }
 
-/** Every byte of the front and the index wrong, one at a time: refused, or found otherwise; never other models. */
+/** Every byte of the front and the index, one at a time, is changed. The result is an error or another way to the same models. */
 static void test_every_byte(void **state)
 {
     const fixture *f = *state;
@@ -235,7 +238,7 @@ static void test_every_byte(void **state)
     adcgs_buffer_clear(&bytes);
 }
 
-/** Cut anywhere: as reading in order has it. */
+/** Cut anywhere, with the same result as reading in order. */
 static void test_truncated(void **state)
 {
     const fixture *f = *state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Settings: what the table holds, presets, changes by name and by option, what is checked, what is told. */
+/** \file Settings: the table, presets, changes by name and by option, checks, and output. */
 #include "config.h" /* for open_memstream() */
 
 #include "train/settings.h"
@@ -34,7 +34,7 @@ static void expect_refused(adcgs_status status, const char *what)
 {
     assert_int_equal(status, ADCGS_ERR_USAGE);
     if (!strstr(error.text, what))
-        fail_msg("'%s' does not say '%s'", error.text, what);
+        fail_msg("'%s' does not contain '%s'", error.text, what);
 }
 
 static void expect_same(const adcgs_train_config *a, const adcgs_train_config *b)
@@ -71,7 +71,7 @@ static void the_table_is_sound(void **state)
     expect_refused(adcgs_train_preset(&c, "quick", &error), "unknown preset 'quick'");
 }
 
-/** A name reaches its field, up to both ends of its range and no further, as a text and as a number. */
+/** A name sets its field, up to both ends of its range and no further, as a text and as a number. */
 static void names_reach_their_fields(void **state)
 {
     for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
@@ -117,7 +117,7 @@ static void texts_that_are_no_settings_are_refused(void **state)
     }
 }
 
-/** What programs take as options of their own means what the setting means. */
+/** An option of a program has the effect of its setting. */
 static void options_mean_what_settings_mean(void **state)
 {
     static const struct {
@@ -141,7 +141,7 @@ static void options_mean_what_settings_mean(void **state)
     expect_refused(adcgs_train_check(&c, &error), "start_anchors=500 and max_anchors=100");
 }
 
-/** However a configuration is made, it is checked as a whole. */
+/** A configuration from any source is checked as a whole. */
 static void configurations_are_checked(void **state)
 {
     static const char *const sets[][2] = {
@@ -184,7 +184,7 @@ static void targets_are_checked(void **state)
     expect_refused(adcgs_train_check(&c, &error), "lambda=1 and a size or PSNR");
 }
 
-/** What is told of a configuration makes it again. */
+/** The printed changes of a configuration reproduce it. */
 static void changes_make_the_same_again(void **state)
 {
     adcgs_train_config c = preset("medium");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats in SOG: the archive, its pictures taken apart here, codebooks; another program's reading. */
+/** \file Splats in SOG: the archive, its images decoded here, codebooks; another program's reading. */
 #include "outside_files.h"
 #include "random_splats.h"
 
@@ -16,7 +16,7 @@
 
 /* ---- The archive ---- */
 
-/** A stored file's bytes in an archive, found from the directory at its end, and its checksum. */
+/** Finds a stored file's bytes in an archive through the directory at its end, and checks its checksum. */
 static const uint8_t *find(const uint8_t *zip, size_t bytes, const char *name, size_t *size)
 {
     const uint8_t *const end = zip + bytes - 22;
@@ -144,7 +144,7 @@ static void test_refused(void **state)
 
 /* ---- Codebooks ---- */
 
-/** The nearest is found; few values are all kept; the error in the mean is less than that of equal steps. */
+/** The search finds the nearest entry. Few values are all kept. The mean error is less than that of equal steps. */
 static void test_codebook(void **state)
 {
     enum { COUNT = 5000 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How far apart anchors are: what a search through all of them says, however they lie. */
-#include "config.h" /* for the declarations that it switches on in system headers */
+/** \file Spacing of anchors: equal to an exhaustive search for any arrangement. */
+#include "config.h" /* for the declarations that it enables in system headers */
 
 #include "geom/geom.h"
 #include "grad/random.h"
@@ -35,7 +35,7 @@ static double spacing_of_all(const uint32_t (*pos)[3], uint32_t n, uint32_t i)
     return n > 1 ? sum / fmin(3, n - 1) : 0;
 }
 
-/** In Morton order, without those that are there twice; \return how many are left. */
+/** Sorts into Morton order and removes duplicates. \return the remaining number. */
 static uint32_t settle(uint32_t (*pos)[3], uint32_t n)
 {
     uint32_t order[MOST], left = 0;

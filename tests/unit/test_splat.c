@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Primitives against an evaluation one by one that follows the specification's
- * text, bit for bit, on every CPU level and for several numbers of threads; and
- * the elementary functions against the C library's.
+ * Primitives against an evaluation one by one that follows the specification's text, bit for bit, on every CPU level and for
+ * several numbers of threads. The elementary functions against the C library's.
  */
 #include "base/cpu.h"
 #include "base/fmath.h"
@@ -65,7 +64,7 @@ static void normalise(float q[4])
         q[i] = ok ? q[i] / sqrtf(n) : i == 0 ? 1.0f : 0.0f;
 }
 
-/* E_q of an anchor straight from its numbers: index of a group of channels, 0 Sigma_v, 1 C_v, 2 + c chunk c of f_g. */
+/* E_q of an anchor directly from its numbers; of: index of a group of channels, 0 Sigma_v, 1 C_v, 2 + c chunk c of f_g. */
 static int step_index(const adcgs_model *m, uint32_t anchor, uint32_t of)
 {
     const adcgs_net *net = &m->net[ADCGS_ROLE_ENTROPY_STEPS];
@@ -88,7 +87,7 @@ static int step_index(const adcgs_model *m, uint32_t anchor, uint32_t of)
     return adcgs_clip(acc[of], 16);
 }
 
-/* The value of a latent: its step adapts to the anchor, if the model has E_q. */
+/* The value of a latent. Its step adapts to the anchor if the model has E_q. */
 static float valued(const adcgs_model *m, uint32_t anchor, uint32_t of, int16_t yq, float d)
 {
     const float factor = m->params.adaptive_steps ? adcgs_step_factor(step_index(m, anchor, of)) : 1.0f;
@@ -125,7 +124,7 @@ static void evaluate_time(const adcgs_model *m, float t, float *out)
         i++;
     const float r = u - (float)i, s = 1 - r;
     for (uint32_t j = 0; j < z->cols; j++) {
-        float row[4]; /* from the one before t's */
+        float row[4]; /* four rows, from the one before t's interval */
         for (uint32_t k = 0; k < 4; k++)
             row[k] = i + k > 0 && i + k <= z->rows ? adcgs_tensor_value(z, (size_t)(i + k - 1) * z->cols + j) : 0;
         if (z->rows == 1 || !m->params.smooth_time) {
@@ -185,7 +184,7 @@ static void turn(const float r[4], float position[3], float offset[3], float q[4
     q[3] = fmaf(z, s[0], fmaf(-y, s[1], fmaf(x, s[2], w * s[3])));
 }
 
-/* The way of an anchor from the middle of its life, and how much of it is there. */
+/* The motion of an anchor from the middle of its lifetime; returns its presence. */
 static float live(const adcgs_model *m, uint32_t anchor, float t, float position[3])
 {
     float s[5];
@@ -198,7 +197,7 @@ static float live(const adcgs_model *m, uint32_t anchor, float t, float position
     return adcgs_exp(-u4);
 }
 
-/* Where an anchor's body takes it: about the middle of the box of all its voxels in its first tier, and from there. */
+/* The motion of an anchor's body: about the centre of the box of all its voxels in its first tier, then the translation. */
 static void take_along(const adcgs_model *m, uint32_t anchor, const float *time, float position[3], float offset[3], float q[4])
 {
     const float *z = time + m->params.time_width + 7 * (m->body[anchor] - 1);
@@ -324,7 +323,7 @@ static void check_model(const adcgs_model *m, int threads, adcgs_cpu_level cpu)
     adcgs_pool_free(&pool);
 }
 
-/* The first anchors, which so have no spans and no bodies. */
+/* Makes the first anchors static, and thus without lifetimes and bodies. */
 static void stand_still(adcgs_model *m, uint32_t anchors)
 {
     const size_t rows = (size_t)adcgs_sigma_rows(&m->params);
@@ -352,7 +351,7 @@ static void test_against_reference(void **state)
         adcgs_random_params(&params, i % 4 != 0, &random);
         if (adcgs_random_model(&m, &params, (uint32_t)adcgs_random_range(&random, 1, 200), 5, &random, &error) != ADCGS_OK)
             fail_msg("%s", error.text);
-        if (i % 3 == 0) /* whole groups that stand still */
+        if (i % 3 == 0) /* whole groups of static anchors */
             stand_still(&m, ADCGS_MIN(m.n, 128));
         for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
             check_model(&m, cpu == ADCGS_CPU_SCALAR ? 1 : 3, cpu);
@@ -360,7 +359,7 @@ static void test_against_reference(void **state)
     }
 }
 
-/* The largest weights and values that a valid model may hold: nothing may become infinite or NaN. */
+/* The largest weights and values of a valid model: no result may be infinite or NaN. */
 /* REQ-PRIM-007, REQ-PRIM-017 */
 static void test_extremes(void **state)
 {
@@ -393,7 +392,7 @@ static void test_extremes(void **state)
     }
 }
 
-/* A tensor of which every number is the same pattern. */
+/* A tensor whose numbers all have the same pattern. */
 static void fill_tensor(adcgs_tensor *t, uint32_t rows, uint32_t cols, float value)
 {
     adcgs_free(NULL, t->m);
@@ -403,7 +402,7 @@ static void fill_tensor(adcgs_tensor *t, uint32_t rows, uint32_t cols, float val
         t->m[i] = (int32_t)adcgs_float_bits(value);
 }
 
-/* The largest network of a role: four layers of 512 rows, the inner ones residual, all numbers as large as they may be. */
+/* The largest network of a role: four layers of 512 rows, the inner ones residual, all numbers as large as allowed. */
 static void fill_network(adcgs_model *m, int role, float value)
 {
     adcgs_net *net = &m->net[role];
@@ -450,7 +449,7 @@ static void test_largest_networks(void **state)
     }
 }
 
-/* Indices at both limits, and factors as the table has them: 2^(q/8), rounded once. */
+/* Indices at both limits, and factors equal to the table: 2^(q/8), rounded once. */
 /* REQ-LATN-011 */
 static void test_adaptive_steps(void **state)
 {
@@ -481,7 +480,7 @@ static void test_adaptive_steps(void **state)
     }
 }
 
-/* A model of which one anchor is there for a while and goes its way, another stands still. */
+/* A model with one anchor that has a lifetime and a velocity, and one that is static. */
 static void make_span(adcgs_model *m, int networks, float pace)
 {
     uint64_t random = 10;
@@ -514,7 +513,7 @@ static void at(const adcgs_model *m, float t, uint32_t anchor, float position[3]
     adcgs_splat_free(&splat);
 }
 
-/* Spans by what they mean: an anchor goes its way in straight line, is whole in the middle, fades alike on both sides. */
+/* Meaning of a lifetime: an anchor moves in a straight line, is fully present in the middle, and fades equally on both sides. */
 /* REQ-PRIM-013, REQ-PRIM-024, REQ-LATN-012 */
 static void test_spans(void **state)
 {
@@ -533,15 +532,15 @@ static void test_spans(void **state)
     }
     assert_true(before == behind && fabsf(behind / there - expf(-u * u * u * u)) < 1e-5f);
     at(&m, 1, 0, late, &behind);
-    assert_true(behind >= 0 && behind < 1e-30f); /* as good as gone, and stays where it was after 4 of its lengths */
+    assert_true(behind >= 0 && behind < 1e-30f); /* practically gone, and at rest after 4 of its lengths */
     at(&m, 0, 1, early, &before);
     at(&m, 1, 1, late, &behind);
-    assert_memory_equal(early, late, sizeof early); /* what is static has no life that ends */
+    assert_memory_equal(early, late, sizeof early); /* a static anchor has no end */
     assert_true(before == behind && before > 0);
     m.sigma[11 + 6] = 1;
     assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_ERR_DATA);
     clear_model(&m);
-    for (int i = 0; i < 8; i++) { /* at the limits of the pace, and with every network there may be */
+    for (int i = 0; i < 8; i++) { /* at the limits of the pace, and with every possible network */
         make_span(&m, i & 1, i & 2 ? 200 : -200);
         m.sigma[9] = i & 4 ? 32767 : 0;
         for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
@@ -550,7 +549,7 @@ static void test_spans(void **state)
     }
 }
 
-/* Numbers of Z that bring a body at t = 1 to a quarter turn about z and a way of (0.5, -1, 0.25); at t = 0 it is at rest. */
+/* Sets Z so that a body at t = 1 has turned by a quarter about z and moved by (0.5, -1, 0.25); at t = 0 it is at rest. */
 static void set_pose(adcgs_model *m, int body)
 {
     const float turned[7] = {(cosf((float)PI / 4) - 1) * 16, 0, 0, sinf((float)PI / 4) * 16, 8, -16, 4};
@@ -563,7 +562,7 @@ static void set_pose(adcgs_model *m, int body)
         z->m[z->cols + column + c] = (int32_t)adcgs_float_bits(turned[c]);
 }
 
-/* Three anchors of body 2 without networks of deformation, one of none, a static one; each with one primitive. */
+/* Three anchors of body 2 without networks of deformation, one of no body, one static; each with one primitive. */
 static void make_body(adcgs_model *m)
 {
     static const uint8_t bodies[5] = {2, 2, 2, 0, 0};
@@ -585,7 +584,7 @@ static void make_body(adcgs_model *m)
     set_pose(m, 2);
 }
 
-/* Bodies by what they mean: a quarter turn about the middle of the anchors' box, and then the way; nothing else changes. */
+/* Meaning of a body: a quarter turn about the centre of the anchors' box, then the translation; nothing else changes. */
 /* REQ-PRIM-013, REQ-PRIM-025, REQ-PRIM-026 */
 static void test_bodies(void **state)
 {
@@ -610,7 +609,7 @@ static void test_bodies(void **state)
     }
     for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
         check_model(&m, 3, cpu);
-    m.body[4] = 1; /* what is static is part of none */
+    m.body[4] = 1; /* a static anchor belongs to no body */
     assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_ERR_DATA);
     m.body[4] = 0;
     m.body[3] = 3;
@@ -618,7 +617,7 @@ static void test_bodies(void **state)
     clear_model(&m);
 }
 
-/* Bodies of any number, with all that may move anchors besides. */
+/* Bodies of any number, together with all other causes of motion. */
 static void test_bodies_and_all(void **state)
 {
     uint64_t random = 13;
@@ -635,7 +634,7 @@ static void test_bodies_and_all(void **state)
             adcgs_net_release(&m.net[ADCGS_ROLE_COARSE], NULL);
         if (i % 4 == 0)
             adcgs_net_release(&m.net[ADCGS_ROLE_FINE], NULL);
-        m.net[ADCGS_ROLE_TIME].layer[0].w.e = m.net[ADCGS_ROLE_TIME].layer[0].w.mode ? 9 : 4; /* poses that show */
+        m.net[ADCGS_ROLE_TIME].layer[0].w.e = m.net[ADCGS_ROLE_TIME].layer[0].w.mode ? 9 : 4; /* poses large enough to see */
         assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_OK);
         for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
             check_model(&m, 3, cpu);

@@ -27,7 +27,7 @@ static adcgs_splats parse(const void *data, size_t bytes)
     return s;
 }
 
-/** One splat of a text. */
+/** Parses the single splat of a text. */
 static adcgs_splats parse_text(const char *text)
 {
     const adcgs_splats s = parse(text, strlen(text));
@@ -35,7 +35,7 @@ static adcgs_splats parse_text(const char *text)
     return s;
 }
 
-/** The text's splat is ONE. */
+/** Expects the text's splat to be ONE. */
 static void expect_one(const char *text)
 {
     adcgs_splats s = parse_text(text), one = parse_text(HEAD("") ONE);
@@ -48,7 +48,7 @@ static void expect_one(const char *text)
 
 /* ---- Headers ---- */
 
-/** Comments may hold any bytes and be of any length; headers may end their lines in three ways, and have blanks there. */
+/** Comments may hold any bytes and be of any length. Headers may have blanks, and three kinds of line ends. */
 static void test_headers(void **state)
 {
     char text[8192], lines[8192];
@@ -123,7 +123,7 @@ static void test_infinities(void **state)
     adcgs_splats_free(&s);
 }
 
-/** 2DGS has two scales: the third axis is flat. Without rotations, or without opacities, they are no surfels. */
+/** 2DGS has two scales: the third axis is flat. Without rotations, or without opacities, the splats are no surfels. */
 static void test_surfels(void **state)
 {
     adcgs_splats s = parse_text("ply\nformat ascii 1.0\ncomment SplatRenderMode: mip\nelement vertex 1\n" PROPERTIES TURN
@@ -155,7 +155,7 @@ static void test_other_kinds(void **state)
 
 /* ---- Far from the origin ---- */
 
-/** A decoder's splats in earth-centred metres keep their shape in every format, and GLB and PLY say where they are. */
+/** A decoder's splats in earth-centred metres keep their shape in every format, and GLB and PLY store their place. */
 static void test_far(void **state)
 {
     static const char *const formats[] = {"f.ply", "f.glb", "f.spz"};
@@ -205,7 +205,7 @@ static void test_comments(void **state)
                  {HEAD("comment SplatRenderMode: default\n") ONE, 0},
                  {HEAD("comment antialiased 0\n") ONE, 0},
                  {HEAD("obj_info SplatRenderMode: mip\n") ONE, 0},
-                 {HEAD("comment antialiased 1\ncomment SplatRenderMode: default\n") ONE, 0}, /* the last one */
+                 {HEAD("comment antialiased 1\ncomment SplatRenderMode: default\n") ONE, 0}, /* the last one counts */
                  {HEAD("comment SplatRenderMode:\n") ONE, 0},
                  {HEAD("") ONE, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -232,7 +232,7 @@ static void test_written(void **state)
         }
 }
 
-/** The value at the middle of an image where a white splat of opacity 0.9 lies; its standard deviations are in pixels. */
+/** The value at the middle of an image with a white splat of opacity 0.9; its standard deviations are in pixels. */
 static double middle(int antialiased, double across, double down, double distance)
 {
     static const float black[3] = {0.0f, 0.0f, 0.0f};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats in PLY: what is written, read and refused; a decoder's splats there and back; splats as scenes. */
+/** \file Splats in PLY: writing, reading and errors; a decoder's splats written and read back; splats as scenes. */
 #include "outside_files.h"
 #include "random_splats.h"
 
@@ -22,7 +22,7 @@ static const char *const names[NAMES] = {"x",       "y",       "z",       "f_dc_
 
 /* ---- Files made here ---- */
 
-/** A PLY as text: properties with `left_out` missing, `odd` of another type, n_rest of f_rest_*, then lines. */
+/** Writes a PLY as text: all properties except `left_out`, `odd` with another type, n_rest of f_rest_*, then lines. */
 static void put_splats(const char *name, const char *left_out, const char *odd, const char *odd_type, int n_rest,
                        const char *count, const char *lines)
 {
@@ -116,7 +116,7 @@ static void test_bad(void **state)
     expect_error(adcgs_splats_alloc(&s, ADCGS_SPLATS_MAX + 1ull, "many", &error), ADCGS_ERR_DATA, "many", "at most 16777216");
 }
 
-/** What is read is what was written, within the rounding of the numbers in the file. */
+/** Expects the read splats to equal the written ones, within the rounding of the numbers in the file. */
 static void same_splats(const adcgs_splats *a, const adcgs_splats *b)
 {
     assert_int_equal(a->n, b->n);
@@ -147,7 +147,7 @@ static void test_round_trip(void **state)
     adcgs_splats_free(&s);
 }
 
-/** f_rest_* for programs that insist on them: zeros, which reading drops. */
+/** f_rest_* for programs that require them: zeros, which reading drops. */
 static void test_rest(void **state)
 {
     static const size_t rest[] = {0, 9, 24, 45};
@@ -206,7 +206,7 @@ static void test_layout(void **state)
         assert_true(adcgs_bits_float(adcgs_load_le32((const uint8_t *)bytes + sizeof header - 1 + 4 * i)) == expected[i]);
 }
 
-/** One byte of a good file at a time gets another value: any outcome but a crash, and one line for what is refused. */
+/** Replaces one byte of a good file at a time. Any outcome is valid but a crash, and an error is one line. */
 static void test_mutations(void **state)
 {
     adcgs_splats s = random_splats(2, 1.0, 0.0, 5);
@@ -274,7 +274,7 @@ static int close_stream(void **state)
     return 0;
 }
 
-/** Slot by slot what the decoder gives, in world units, without what cannot be seen. */
+/** Takes the decoder's splats, slot by slot, in world units, without invisible ones. */
 static void test_take(void **state)
 {
     const fixture *f = *state;
@@ -303,7 +303,7 @@ static void test_take(void **state)
     adcgs_splats_free(&s);
 }
 
-/** Anchors as points: where the stream says, in the colours that the decoder gives at the middle of the stream. */
+/** Anchors as points: at the places in the stream, in the colours that the decoder gives at the middle of the stream. */
 static void test_points(void **state)
 {
     const fixture *f = *state;
@@ -347,7 +347,7 @@ static double psnr(const float *a, const float *b, size_t n, double *variance)
     return 10.0 * log10((double)n / fmax(square, 1e-12));
 }
 
-/** The splats themselves, in their own units, without negative colours as everyone draws a PLY; [0,1], planar. */
+/** Renders the splats themselves, in their own units. Negative colours become 0, as in other PLY renderers; [0,1], planar. */
 static float *draw(const adcgs_primitives *p, const double origin[3], double scale, const adcgs_camera *camera)
 {
     const size_t n = 3 * (size_t)camera->width * (size_t)camera->height;
@@ -379,7 +379,7 @@ static adcgs_scene *open_splats(const char *path)
     return scene;
 }
 
-/** A picture of a scene's view and one of primitives from where the view is. */
+/** Compares the image of a scene's view with one of the primitives from the same camera. */
 static void same_picture(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_primitives *p,
                          const double origin[3], double scale)
 {
@@ -395,7 +395,7 @@ static void same_picture(const adcgs_scene *scene, const adcgs_scene_view *view,
     free(expected);
 }
 
-/** A stream's splats, exported and read as a scene, look as the stream's do. */
+/** A stream's splats, exported and read as a scene, look the same as in the stream. */
 static void test_export(void **state)
 {
     const fixture *f = *state;
@@ -413,7 +413,7 @@ static void test_export(void **state)
 
 /* ---- Scenes ---- */
 
-/** Whether a camera looks straight at a point from a distance, and is a right-handed frame. */
+/** Expects a camera to look straight at a point from a distance, in a right-handed frame. */
 static void looks_at(const adcgs_camera *c, const double point[3], double distance)
 {
     const double *m = c->cam_to_world;
@@ -438,7 +438,7 @@ static double between(const adcgs_camera *a, const adcgs_camera *b)
     return acos(fmin(dot, 1.0));
 }
 
-/** A splat far out and one that cannot be seen change nothing; the rest is in the middle of every view. */
+/** A splat far out and an invisible one change nothing. The others are in the middle of every view. */
 static void test_cameras(void **state)
 {
     adcgs_splats s = random_splats(501, 2.0, 10.0, 8);
@@ -454,7 +454,7 @@ static void test_cameras(void **state)
     assert_int_equal(scene->axes, ADCGS_AXES_UNKNOWN);
     const adcgs_camera *first = &scene->views[0][0].camera, *second = &scene->views[0][1].camera;
     double centre[3], outer = 0.0;
-    for (int a = 0; a < 3; a++) { /* where the axes of two cameras meet */
+    for (int a = 0; a < 3; a++) { /* intersection of the axes of two cameras */
         const double *m = first->cam_to_world, *w = second->cam_to_world;
         double b = 0.0, d = 0.0, e = 0.0;
         for (int r = 0; r < 3; r++) {
@@ -476,8 +476,8 @@ static void test_cameras(void **state)
             for (uint32_t j = 0; split && j < scene->n_views[0]; j++)
                 nearest = fmin(nearest, between(&v->camera, &scene->views[0][j].camera));
         }
-    assert_true(nearest > 1e-3); /* no view to test on is one of training */
-    for (int i = 0; i < 500; i++) { /* and no direction is farther than 25 degrees from a view of training */
+    assert_true(nearest > 1e-3); /* no test view equals a training view */
+    for (int i = 0; i < 500; i++) { /* and no direction is farther than 25 degrees from a training view */
         const double h = cos(0.1 + i * 0.006), r = sqrt(1 - h * h);
         const adcgs_camera c = {.cam_to_world = {0, 0, r * cos(i), 0, 0, 0, h, 0, 0, 0, r * sin(i), 0}};
         double least = 10.0;
@@ -533,9 +533,9 @@ static void test_scene(void **state)
     adcgs_splats_free(&s);
 }
 
-/* ---- Colours that depend on the direction ---- */
+/* ---- View-dependent colours ---- */
 
-/** Orthonormal over the sphere; and the first three as they are signed everywhere. */
+/** Orthonormal over the sphere; the first three have the usual signs. */
 static void test_harmonics(void **state)
 {
     enum { STEPS = 64 };
@@ -567,7 +567,7 @@ static void test_harmonics(void **state)
     assert_true(fabs(out[1] - sqrt(0.75 / M_PI)) < 1e-12);
 }
 
-/** A splat in the middle whose green grows along z: f_rest is channel by channel, the direction that from the camera. */
+/** A splat in the middle whose green grows along z: f_rest is channel by channel, with the direction from the camera. */
 static void test_view_dependence(void **state)
 {
     put_splats("v.ply", NULL, NULL, NULL, 9, "1", "0 0 0 0 0 0 8 -1 -1 -1 1 0 0 0  0 0 0  0 1 0  0 0 0\n");
@@ -583,7 +583,7 @@ static void test_view_dependence(void **state)
         free(rgb);
     }
     adcgs_scene_free(&scene);
-    /* All zero is no dependence. */
+    /* Coefficients that are all zero mean no dependence. */
     adcgs_splats s;
     put_splats("v.ply", NULL, NULL, NULL, 24, "1", GOOD "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 -0\n");
     expect_good(adcgs_splats_read(&s, in("v.ply"), &error));
@@ -605,7 +605,7 @@ static void test_sunflower(void **state)
     const double origin[3] = {0, 0, 0};
     expect_good(adcgs_splats_read(&s, path, &error));
     assert_true(s.n == 14051 && s.degree == 0);
-    for (uint32_t i = 0; i < s.n; i++) /* what a decoder may give */
+    for (uint32_t i = 0; i < s.n; i++) /* the range of a decoder's values */
         s.opacity[i] = fminf(fmaxf(s.opacity[i], 1e-6f), 0.99f);
     adcgs_scene *scene = open_splats(path);
     adcgs_splats_primitives(&s, &p);

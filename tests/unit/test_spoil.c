@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Faults of scenes that are filmed: what each does, that none does anything else, and what is refused. */
+/** \file Synthetic faults of filmed scenes: the effect of each, that it has no other effect, and invalid options. */
 #include "scenes/spoil.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ static adcgs_spoil spoilt(const char *text)
     return spoil;
 }
 
-/* Degrees that a camera is turned by. */
+/* Degrees by which a camera is turned. */
 static double turned(const char *text, int camera, int number)
 {
     const adcgs_spoil spoil = spoilt(text);
@@ -38,7 +38,7 @@ static double turned(const char *text, int camera, int number)
         for (int c = 0; c < 3; c++)
             trace += m[4 * r + c] * pose[4 * r + c];
     for (int r = 0; r < 3; r++)
-        assert_true(m[4 * r + 3] == pose[4 * r + 3]); /* it stands where it stood */
+        assert_true(m[4 * r + 3] == pose[4 * r + 3]); /* it stays in its place */
     return acos(fmin(0.5 * (trace - 1.0), 1.0)) * 57.29577951308232;
 }
 
@@ -95,7 +95,7 @@ static void cameras_are_turned_as_far_as_they_say(void **state)
     assert_true(fabs(turned("wrongpose=20", 6, 0) - 20.0) < 1e-6 && turned("wrongpose=20", 5, 0) < 1e-5);
 }
 
-/* Each convention twice is the one of before. */
+/* Each convention applied twice gives the original. */
 static void other_axes_are_others(void **state)
 {
     static const char *const axes[] = {"axes=1", "axes=2", "axes=3"};

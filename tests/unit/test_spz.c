@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Splats in SPZ: what comes back of what is written, within the format's steps; old versions, made here byte by byte; what is
- * refused; another program's files, and its reading of ours.
+ * Splats in SPZ: written and read back, within the format's steps; old versions, made here byte by byte; errors; another
+ * program's files, and its reading of ours.
  */
 #include "outside_files.h"
 #include "random_splats.h"
@@ -14,9 +14,9 @@
 
 #define SQRT_HALF 0.70710678118654752
 
-/* ---- There and back ---- */
+/* ---- Round trip ---- */
 
-/** Twice the rounding of a component, and what that means for the one that follows from the others. */
+/** Twice the rounding of a component, and its consequence for the one that follows from the others. */
 static void near_rotation(const adcgs_splats *a, const adcgs_splats *b, uint32_t i)
 {
     double dot = 0.0;
@@ -26,7 +26,7 @@ static void near_rotation(const adcgs_splats *a, const adcgs_splats *b, uint32_t
         near(a->rotation[c][i], (dot < 0.0 ? -1.0f : 1.0f) * b->rotation[c][i], 0.0, 3.0 * SQRT_HALF / 1022 + 1e-6);
 }
 
-/** b is what was written with so many bits behind the point. */
+/** Expects b to equal the splats written with this many fractional bits. */
 static void near_splats(const adcgs_splats *a, const adcgs_splats *b, int bits)
 {
     assert_int_equal(a->n, b->n);
@@ -63,7 +63,7 @@ static void test_round_trip(void **state)
     }
 }
 
-/** What is outside the format's ranges takes their ends; a position that does not fit is refused. */
+/** Values outside the format's ranges are clamped. A position that does not fit is an error. */
 static void test_ranges(void **state)
 {
     adcgs_splats s = random_splats(2, 1.0, 0.0, 5), back;
@@ -95,7 +95,7 @@ static void test_ranges(void **state)
 
 /* ---- Versions 2 and 3 ---- */
 
-/** Packs by gzip, as a file. */
+/** Writes a file packed by gzip. */
 static size_t put_gzip(const char *name, const uint8_t *raw, size_t bytes)
 {
     uint8_t packed[4096];
@@ -107,7 +107,7 @@ static size_t put_gzip(const char *name, const uint8_t *raw, size_t bytes)
     return sizeof packed - z.avail_out;
 }
 
-/** Two splats with harmonics of degree 1. \return its bytes. */
+/** Two splats with harmonics of degree 1. \return number of bytes. */
 static size_t make_old(uint8_t *to, int version)
 {
     static const uint8_t head[] = {'N', 'G', 'S', 'P', 0, 0, 0, 0, 2, 0, 0, 0, 1, 12, 0, 0};
@@ -160,7 +160,7 @@ static void test_old(void **state)
     }
 }
 
-/* ---- What is refused ---- */
+/* ---- Errors ---- */
 
 static void expect_bad(const uint8_t *data, size_t bytes, adcgs_status status, const char *what)
 {
@@ -219,7 +219,7 @@ static void test_bad(void **state)
     free(file);
 }
 
-/** A stream that packs more or less than its column, or so little that the column cannot come of it. */
+/** A stream that unpacks to more or less than its column, or is too small for it. */
 static void test_bad_streams(void **state)
 {
     adcgs_splats s = random_splats(7, 1.0, 0.0, 8);
@@ -242,7 +242,7 @@ static void test_bad_streams(void **state)
             expect_bad(file, 112 + packed + rest, ADCGS_ERR_DATA, n < 63 ? "positions: 62 bytes, expected 63" : "damaged zstd");
     }
     free(good);
-    /* Sixteen million splats in a few bytes: refused before there is memory for them. */
+    /* Sixteen million splats in a few bytes: refused before any memory is allocated for them. */
     adcgs_store_le32(file + 8, ADCGS_SPLATS_MAX);
     adcgs_store_le64(file + 40, (uint64_t)9 * ADCGS_SPLATS_MAX);
     expect_bad(file, 400, ADCGS_ERR_DATA, "positions: a stream of");
@@ -283,7 +283,7 @@ static void test_bad_old(void **state)
     }
 }
 
-/** Records before the table: other vendors' are skipped, axes have to be ours. */
+/** Records before the table: other vendors' are skipped; axes have to be ours. */
 static void test_extensions(void **state)
 {
     adcgs_splats s = random_splats(7, 1.0, 0.0, 8);
@@ -315,7 +315,7 @@ static void test_extensions(void **state)
     expect_bad(file, bytes, ADCGS_ERR_DATA, "5 bytes, but 4 follow");
 }
 
-/** One byte of a good file at a time gets another value: any outcome but a crash, and one line for what is refused. */
+/** Replaces one byte of a good file at a time. Any outcome is valid but a crash, and an error is one line. */
 static void test_mutations(void **state)
 {
     adcgs_splats s = random_splats(3, 1.0, 0.0, 8);
@@ -339,9 +339,9 @@ static void test_mutations(void **state)
     }
 }
 
-/* ---- Which way is up ---- */
+/* ---- The up direction ---- */
 
-/** Along a splat's longest axis from its middle: the same place in the world, before and after y is up. */
+/** The tip of a splat's longest axis is the same place in the world before and after the conversion to y up. */
 static void test_up(void **state)
 {
     static const uint8_t axes[] = {ADCGS_SPLATS_UP_UNKNOWN, ADCGS_SPLATS_Y_UP, ADCGS_SPLATS_Z_UP, ADCGS_SPLATS_Y_DOWN};
@@ -369,7 +369,7 @@ static void test_up(void **state)
     }
 }
 
-/* ---- Files of others ---- */
+/* ---- Files of other programs ---- */
 
 static void test_biker(void **state)
 {
@@ -387,7 +387,7 @@ static void test_biker(void **state)
     adcgs_splats_free(&s);
 }
 
-/** PlayCanvas' program reads what we write, as we do; and what it writes of our PLY, by Niantic's own code, we read. */
+/** PlayCanvas' program reads our files like our reader does. We read its SPZ file of our PLY, which Niantic's own code writes. */
 static void test_splat_transform(void **state)
 {
     need_splat_transform();

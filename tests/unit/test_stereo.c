@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Matched pictures: points of what is still lie on the wall, those of what moves on the square, where it is at their moment, with
- * its speed.
+ * Multi-view stereo: static points lie on the wall. Moving points lie on the square, at its place at their time, with its speed.
  */
 #include "square_scene.h"
 
@@ -37,7 +36,7 @@ static void what_is_still_is_the_wall(void **state)
         for (int c = 0; c < 3 && fabs(p->x[2] - WALL) < 0.01; c++)
             assert_true(fabs((double)p->rgb[c] - texture(p->x[0], p->x[1], 20 + (uint64_t)c)) < 0.3);
     }
-    print_message("%u still, %u off\n", s.n_still, off);
+    print_message("%u static points, %u off\n", s.n_still, off);
     assert_true(off < s.n_still / 20);
 }
 
@@ -51,7 +50,7 @@ static void what_moves_is_the_square(void **state)
         const adcgs_stereo_point *p = &s.moving[i];
         const double x = p->x[0] - square_at((double)p->t);
         assert_true(p->moves && (!i || p->t >= s.moving[i - 1].t));
-        if (p->in_place) { /* what the square uncovers */
+        if (p->in_place) { /* the background that the square uncovers */
             astray += fabs(p->x[2] - WALL) > 0.05 * WALL;
             seen += p->in_place == ADCGS_PLACE_STILL;
             continue;
@@ -60,13 +59,13 @@ static void what_moves_is_the_square(void **state)
         off += fabs(p->x[2] - SQUARE) > 0.05 * SQUARE || fabs(x) > HALF + 0.04 || fabs(p->x[1]) > HALF + 0.04;
         fast += fabs((double)p->velocity[0] - SPEED) < 0.3 * SPEED && fabs((double)p->velocity[1]) < 0.3 * SPEED;
     }
-    print_message("%u of what moves, %u off, %u as fast as they are\n", n, off, fast);
+    print_message("%u moving points, %u off, %u at the right speed\n", n, off, fast);
     assert_true(n > s.n_moving / 2 && astray < (s.n_moving - n) / 4 && seen >= (s.n_moving - n) * 3 / 4);
     assert_true(off < n / 10);
     assert_true(fast > n * 2 / 3);
 }
 
-/** What a camera sees is known; what none sees is not. */
+/** A place that a camera sees is known; a place that none sees is not. */
 static void what_is_known(void **state)
 {
     assert_true(adcgs_stereo_is_known(&found, (const double[]){ 0.1, 0, 1 }));
@@ -74,7 +73,7 @@ static void what_is_known(void **state)
     assert_false(adcgs_stereo_is_known(&found, (const double[]){ 0, 0, -1 }));
 }
 
-/** What hangs before a single camera floats; what many would see, or one knows to be there, does not. */
+/** A point in front of a single camera is a floater. A point that many cameras would see, or that one knows to exist, is not. */
 static void what_floats(void **state)
 {
     uint32_t floats = 0;
@@ -90,7 +89,7 @@ static void what_floats(void **state)
     assert_false(adcgs_stereo_floats(&(adcgs_stereo){ .maps = NULL }, (const double[]){ 0, 0, -1 }));
 }
 
-/** Share of the square's points of a moment that end so many moments before it and behind. */
+/** Share of the square's points of a frame that end this many frames before and after it. */
 static double ending(const adcgs_stereo *s, int moment, double before, double behind)
 {
     const double ends[2] = { before / (MOMENTS - 1), behind / (MOMENTS - 1) };
@@ -105,7 +104,7 @@ static double ending(const adcgs_stereo *s, int moment, double before, double be
     return n ? (double)right / n : 0;
 }
 
-/** What is there at two moments ends half a moment before them and behind; of what stays there is no end. */
+/** An object that exists in two frames ends half a frame before and after them. A permanent object has no end. */
 static void what_comes_and_goes_has_ends(void **state)
 {
     (void)state;
@@ -114,13 +113,13 @@ static void what_comes_and_goes_has_ends(void **state)
     adcgs_stereo s = find(NULL);
     put_pictures();
     const double first = ending(&s, 4, 0.5, 1.5), second = ending(&s, 5, 1.5, 0.5), stays = ending(&found, 4, 0, 0);
-    print_message("right: %.2f, %.2f; of what stays %.2f\n", first, second, stays);
+    print_message("share with the right ends: %.2f, %.2f; permanent object %.2f\n", first, second, stays);
     assert_true(first > 0.8 && second > 0.8);
-    assert_true(stays > 0.6); /* at its edges velocities need not be off by much */
+    assert_true(stays > 0.6); /* at its edges, a small error of the velocity suffices for an end */
     adcgs_stereo_clear(&s);
 }
 
-/** A stripe as wide as a pixel, which no window of matching shows alone, is found where it is, and not in the wall behind it. */
+/** A stripe one pixel wide, which no matching window shows alone, is found at its own place and not in the wall behind it. */
 static void what_is_thin_is_found(void **state)
 {
     const double pixel = SQUARE / FOCAL;
@@ -139,12 +138,12 @@ static void what_is_thin_is_found(void **state)
         n++;
         off += fabs(p->x[2] - SQUARE) > 0.05 * SQUARE || fabs(p->x[0] - square_at((double)p->t)) > 2 * pixel;
     }
-    print_message("%u points of what is thin, %u off; %u in place\n", n, off, s.n_moving - n);
+    print_message("%u points of the thin stripe, %u off; %u in place\n", n, off, s.n_moving - n);
     assert_true(n > MOMENTS * 8 && off < n / 4);
     adcgs_stereo_clear(&s);
 }
 
-/** Turned by so many pixels up, and down, by turns, for as long as they are looked at. */
+/** The median error of the poses while cameras are turned by this many pixels, up and down alternately. */
 static double off_by(double pixels)
 {
     const double turn = pixels / FOCAL;
@@ -161,12 +160,12 @@ static double off_by(double pixels)
     return median;
 }
 
-/** Where poses are as they are said to be, matches lie on their lines; else as far beside them as poses are off each other. */
+/** With correct poses, matches lie on their epipolar lines; otherwise as far off them as the poses are wrong. */
 static void poses_that_are_off_are_noticed(void **state)
 {
     assert_true(found.poses.median < 0.1);
     const double little = off_by(0.25), much = off_by(0.75), again = off_by(0);
-    print_message("off by %.3f, by 0.5: %.3f, by 1.5: %.3f\n", found.poses.median, little, much);
+    print_message("median error %.3f; with poses off by 0.5: %.3f, by 1.5: %.3f\n", found.poses.median, little, much);
     assert_true(little > 0.2 && little < 0.9 && much > 1.1 && much < 2);
     assert_true(again == found.poses.median);
 }

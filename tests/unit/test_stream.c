@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Streams: writing and reading are inverse for any valid model, however the bytes arrive and whatever decodes them. */
+/** \file Streams: writing and reading are inverse for any valid model, for any order of arrival and any way of decoding. */
 #include "random_model.h"
 
 #include "base/cpu.h"
@@ -111,7 +111,7 @@ static void test_round_trip(void **state)
     }
 }
 
-/** Bodies in any order, and static anchors between them, come back. */
+/** Bodies in any order, with static anchors between them, are decoded exactly. */
 /* REQ-LATN-013 */
 static void test_bodies(void **state)
 {
@@ -133,7 +133,7 @@ static void test_bodies(void **state)
     }
 }
 
-/** Flags of two anchors that are not static, with all primitives and these bodies; a negative one: the same as before. */
+/** Decodes the flags of two moving anchors with all primitives and these bodies; a negative one: the same as before. */
 static adcgs_status decode_bodies(adcgs_model *m, int first, int second, adcgs_error *error)
 {
     adcgs_adaptive flag[1], same[2], tree[16], mask[4];
@@ -164,7 +164,7 @@ static adcgs_status decode_bodies(adcgs_model *m, int first, int second, adcgs_e
     return status;
 }
 
-/** What is sent is a body that there is, and another one than it might have been without sending any. */
+/** A coded body must exist, and differ from the body that is inferred without coding. */
 /* REQ-LATN-013, REQ-LATN-014 */
 static void test_bodies_refused(void **state)
 {
@@ -185,7 +185,7 @@ static void test_bodies_refused(void **state)
     adcgs_model_clear(&m, NULL);
 }
 
-/** A model decoded with fewer layers has the layers that it has, and predicted means for the rest. */
+/** A model decoded with fewer layers has these layers, and predicted means for the rest. */
 /* REQ-LATN-005, REQ-LATN-007 */
 static void test_layers(void **state)
 {
@@ -329,7 +329,7 @@ static void test_trace(void **state)
     make_stream(&stream, 1, 1, 300, 12);
     adcgs_random_one_tier(&stream.segments[0]);
     stream.slice_log2 = ADCGS_SLICE_LOG2_MIN;
-    memcpy(stream.meta[0].value, "\"\\\177\n", 5); /* the four characters that a trace must not show as they are */
+    memcpy(stream.meta[0].value, "\"\\\177\n", 5); /* the four characters that a trace must escape */
     adcgs_buffer_init(&bytes);
     check(adcgs_stream_write(&stream, &bytes, &error), &error);
     const int layers = adcgs_params_layers(&stream.params);
@@ -346,7 +346,7 @@ static void test_trace(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** What the writer refuses: values that the networks cannot give, times off the ticks, models that differ in parameters. */
+/** The writer refuses values that the networks cannot give, times off the ticks, and models that differ in parameters. */
 static void test_writer_refuses(void **state)
 {
     adcgs_error error = { ADCGS_OK, "" };

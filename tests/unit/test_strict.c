@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A process in another floating-point mode gets no decoder and no frame, and the message says why. */
+/** \file A process in another floating-point mode gets no decoder and no frame, and the message gives the reason. */
 #include "base/cpu.h"
 #include "base/strict.h"
 
@@ -53,7 +53,7 @@ static adcgs_status render(adcgs_decoder *decoder, adcgs_error *error)
     return adcgs_render(decoder, &camera, 0, &frame, error);
 }
 
-/* Runs in the wrong mode: no output of the test framework here, verdicts go back. */
+/* Runs in the wrong mode: no output of the test framework here; the verdicts are returned. */
 typedef struct verdicts {
     adcgs_status modes, check, open, render, primitives;
     adcgs_error why;
@@ -109,7 +109,7 @@ static void test_rounding(void **state)
 }
 
 #ifdef __SSE2__
-/* What a library linked with -ffast-math does to the process: flush to zero, subnormals are zero, both. */
+/* The effect of a library linked with -ffast-math on the process: flush to zero, subnormals are zero, both. */
 static void test_flushing(void **state)
 {
     static const unsigned modes[] = { 0x8000, 0x0040, 0x8040 };

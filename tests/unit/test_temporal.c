@@ -26,7 +26,7 @@ static float random_value(void)
     return (float)(seed >> 8) / 16777216.0f;
 }
 
-/** A white square of 4x4 moves to the right by two pixels a picture before grey. Where it has been: x 8 to 21, y 10 to 13. */
+/** A white square of 4x4 moves to the right by two pixels per image before grey. Its path covers x 8 to 21, y 10 to 13. */
 static void draw_square(void)
 {
     for (int t = 0; t < FRAMES; t++)
@@ -38,8 +38,8 @@ static void draw_square(void)
 }
 
 /**
- * Squares of 5x5 pixels about a pixel have more than half of themselves on that path in its outer rows for x 10 to 19, in
- * its inner rows for x 9 to 20. The region reaches three pixels farther.
+ * The majority of the square of 5x5 pixels about a pixel lies on that path for x 10 to 19 in its outer rows and for x 9 to 20 in
+ * its inner rows. The region reaches three pixels farther.
  */
 static int is_near_square(int pixel)
 {
@@ -48,7 +48,7 @@ static int is_near_square(int pixel)
            (x >= 10 - 3 && x <= 19 + 3 && y >= 10 - 3 && y <= 13 + 3);
 }
 
-/** Measure both videos. */
+/** Measures both videos. */
 static adcgs_temporal_total measure(adcgs_temporal_view views[FRAMES], uint8_t region[PLANE])
 {
     adcgs_temporal *t;
@@ -72,7 +72,7 @@ static void expect_near(double got, double expected)
         fail_msg("%.15g, expected %.15g", got, expected);
 }
 
-/** The path of the square and no more is dynamic, and identical videos are perfect. */
+/** Exactly the path of the square is dynamic, and identical videos are perfect. */
 static void test_square(void **state)
 {
     adcgs_temporal_view views[FRAMES];
@@ -87,7 +87,7 @@ static void test_square(void **state)
         assert_true(views[t].dynamic_psnr == 99 && (t ? views[t].flicker == 0 : isnan(views[t].flicker)));
 }
 
-/** An error that does not change: it is no flicker and no variance, and only what lies inside counts as dynamic. */
+/** A constant error causes neither flicker nor variance, and only the error inside the region counts as dynamic. */
 static void test_constant_shift(void **state)
 {
     adcgs_temporal_view views[FRAMES];
@@ -104,7 +104,7 @@ static void test_constant_shift(void **state)
     }
 }
 
-/** Pictures that are brighter by an eighth each second time: closed forms. */
+/** Every second image is brighter by an eighth: closed forms. */
 static void test_blinking(void **state)
 {
     adcgs_temporal_view views[FRAMES];
@@ -120,7 +120,7 @@ static void test_blinking(void **state)
         expect_near(views[t].dynamic_psnr, t % 2 ? -20 * log10(0.125) : 99);
         assert_true(!t || views[t].flicker == 0.125);
     }
-    /* The first channel of the truth blinks, by less than what counts as a change; then the third too, by more. */
+    /* The first channel of the truth blinks, by less than a change that counts. Then the third blinks too, by more. */
     for (int t = 1; t < FRAMES; t += 2)
         for (int i = 0; i < PLANE; i++)
             truth[t][i] += 0.09375f;
@@ -162,7 +162,7 @@ static int is_within(int a, int b, int reach)
     return abs(a % W - b % W) <= reach && abs(a / W - b / W) <= reach;
 }
 
-/** The region by its definition: whether any pixel near has more neighbours that change than others. */
+/** The region by its definition: true near any pixel with more changing neighbours than static ones. */
 static void reference_region(uint8_t region[PLANE])
 {
     memset(region, 0, PLANE);
@@ -176,7 +176,7 @@ static void reference_region(uint8_t region[PLANE])
     }
 }
 
-/** Mean over static values of the variance of a video, in two passes over each. */
+/** Mean variance of a video over the static values, in two passes over each. */
 static double reference_variance(video v, const uint8_t region[PLANE])
 {
     double sum = 0, n = 0;
@@ -213,7 +213,7 @@ static double reference_flicker(int t)
     return sum / VALUES;
 }
 
-/** Whether a value is at a place where noise moves far: at a corner, at two edges, and at a single pixel. */
+/** True if a value is at a place with strong noise: a corner, two edges, and a single pixel. */
 static int is_far(int i)
 {
     const int x = i % W, y = i % PLANE / W, c = i / PLANE;
@@ -221,7 +221,7 @@ static int is_far(int i)
            (x >= 5 && x < 10 && y >= H - 2 && c == 2) || (x == 20 && y == 17);
 }
 
-/** Noise at each place, more of it at some. */
+/** Noise at each place, stronger at some. */
 static void test_against_reference(void **state)
 {
     adcgs_temporal_view views[FRAMES];
@@ -244,7 +244,7 @@ static void test_against_reference(void **state)
     }
 }
 
-/** Cameras a and b take turns, backwards in time, and c moves; a difference in any number makes another camera. */
+/** Cameras a and b take turns, backwards in time, and c moves. A difference in any number makes another camera. */
 static void test_cameras(void **state)
 {
     static const uint32_t expected_of[8] = {0, 1, 2, 0, 1, 3, 0, 4}, expected_order[8] = {6, 3, 0, 4, 1, 2, 5, 7};
@@ -256,7 +256,7 @@ static void test_cameras(void **state)
     views[2].camera.cx = 5;
     views[5].camera.height = 7;
     views[7].camera.fy = nextafter(9, 10);
-    strcpy(views[3].camera.name, "other"); /* names are of pictures */
+    strcpy(views[3].camera.name, "other"); /* names belong to images */
     assert_int_equal(adcgs_sort_by_camera(views, 8, of, order, &n, &error), ADCGS_OK);
     assert_int_equal(n, 5);
     assert_memory_equal(of, expected_of, sizeof of);
@@ -271,7 +271,7 @@ static void test_cameras(void **state)
     assert_int_equal(n, 0);
 }
 
-/* ---- From what on changes count ---- */
+/* ---- Threshold of changes ---- */
 
 enum { MANY = 24 };
 
@@ -284,7 +284,7 @@ static float normal_value(void)
     return sum;
 }
 
-/** Grey with noise, of which a part grows brighter by so much over all pictures; the last value of all is masked at times. */
+/** Grey with noise; the first `part` values brighten by `growth` over all images. The last one is masked every second time. */
 static adcgs_changes *make_changes(float noise, float growth, int part)
 {
     static float picture[VALUES];
@@ -308,34 +308,34 @@ static void test_noise(void **state)
         adcgs_changes *still = make_changes((float)noise, 0, 0), *slow = make_changes((float)noise, 0.02f, VALUES);
         const double found = adcgs_changes_noise(still);
         assert_true(found > 0.4 * noise && found < noise);
-        assert_true(fabs(adcgs_changes_noise(slow) / found - 1) < 0.3); /* slow changes are none */
+        assert_true(fabs(adcgs_changes_noise(slow) / found - 1) < 0.3); /* slow changes do not count as noise */
         adcgs_changes_free(&still);
         adcgs_changes_free(&slow);
     }
 }
 
-/** A slow change that nobody would call motion counts where it is worth following, and only there. */
+/** A slow change, too small to count as motion, counts only where following it is worthwhile. */
 static void test_worth(void **state)
 {
     (void)state;
-    const double square = 0.08 * 0.08 / 12; /* of a value that grows by 0.08 */
+    const double square = 0.08 * 0.08 / 12; /* mean square of a value that grows by 0.08 */
     adcgs_changes *c = make_changes(0.001f, 0.08f, VALUES);
     assert_true(adcgs_changes_least(c, 0.02, 8 * square) == ADCGS_CHANGE_LEAST);
     assert_true(adcgs_changes_least(c, 0.02, square) < 0.06);
-    assert_true(adcgs_changes_least(c, 0.07, square) == 0.07); /* what nobody sees is never followed */
+    assert_true(adcgs_changes_least(c, 0.07, square) == 0.07); /* never below the visible change */
     adcgs_changes_free(&c);
-    c = make_changes(0.001f, 0.08f, VALUES / 50); /* nor is it lost among what rests */
+    c = make_changes(0.001f, 0.08f, VALUES / 50); /* it is found among static values, too */
     assert_true(adcgs_changes_least(c, 0.02, square) < 0.06);
     adcgs_changes_free(&c);
     c = make_changes(0.001f, 0.08f, 0);
-    assert_true(adcgs_changes_least(c, 0.02, 1e-4) == ADCGS_CHANGE_LEAST); /* there is nothing to follow */
+    assert_true(adcgs_changes_least(c, 0.02, 1e-4) == ADCGS_CHANGE_LEAST); /* nothing to follow */
     adcgs_changes_free(&c);
     c = make_changes(0.015f, 0.08f, VALUES / 2);
-    assert_true(adcgs_changes_least(c, 0.02, 1e-9) > 0.03); /* nor is noise */
+    assert_true(adcgs_changes_least(c, 0.02, 1e-9) > 0.03); /* noise is not followed */
     adcgs_changes_free(&c);
 }
 
-/** What changes is found, and what is about it; of what changes much a single pixel, of what changes less only more of it. */
+/** The region holds changes and their surroundings: a single pixel if the change is large, several pixels if it is smaller. */
 static void test_changing_region(void **state)
 {
     (void)state;
@@ -347,11 +347,11 @@ static void test_changing_region(void **state)
         for (int i = 0; i < VALUES; i++)
             picture[i] = 0.4f + 0.002f * normal_value();
         if (t == 7)
-            picture[10 * W + 5] += 0.2f;          /* red of a pixel */
+            picture[10 * W + 5] += 0.2f;          /* red of one pixel */
         if (t == 8)
-            picture[PLANE + 10 * W + 20] += 0.12f; /* green of one, less */
+            picture[PLANE + 10 * W + 20] += 0.12f; /* green of one pixel, by less */
         for (int i = 0; t == 9 && i < 25; i++)
-            picture[2 * PLANE + (20 + i / 5) * W + 30 + i % 5] += 0.12f; /* blue of some */
+            picture[2 * PLANE + (20 + i / 5) * W + 30 + i % 5] += 0.12f; /* blue of several pixels */
         adcgs_changes_add(c, picture);
     }
     assert_int_equal(adcgs_changes_region(c, 0.1, region, &error), ADCGS_OK);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Tiers: a decoder that draws the first of them shows what a stream that ends behind them does; every prefix of a stream is the
- * model without the anchors that have not come, in order and pushed; so is one that lost a chunk.
+ * Tiers. A decoder that renders the first tiers shows the same as a stream that ends behind them. Every prefix of a stream is the
+ * model without the missing anchors, read in order or pushed, and so is a stream that lost a chunk.
  */
 #include "random_model.h"
 
@@ -45,7 +45,7 @@ static void clear(adcgs_stream *stream, adcgs_buffer *bytes)
     adcgs_buffer_clear(bytes);
 }
 
-/** Position of the GEOM of a tier; of ENDC if there is none. */
+/** Position of the GEOM of a tier, or of ENDC if there is none. */
 static size_t place_of(const adcgs_buffer *bytes, int tier)
 {
     size_t at = ADCGS_SIGNATURE_BYTES;
@@ -114,7 +114,7 @@ static void test_wanted(void **state)
     }
 }
 
-/** What is there of a model is what was written, less the tiers that are absent; layers may be concealed. */
+/** Expects a partial model to equal the written one without the absent tiers; layers may be concealed. */
 static void check_part(const adcgs_model *whole, const adcgs_model *part)
 {
     adcgs_error difference = { ADCGS_OK, "" };
@@ -130,7 +130,7 @@ static void check_part(const adcgs_model *whole, const adcgs_model *part)
     adcgs_model_clear(&coarser, NULL);
 }
 
-/** Push that many bytes to a new decoder. */
+/** Pushes n bytes to a new decoder. */
 static adcgs_decoder *push_bytes(const uint8_t *data, size_t n)
 {
     adcgs_decoder *d = NULL;
@@ -176,7 +176,7 @@ static void test_every_prefix(void **state)
     clear(&stream, &bytes);
 }
 
-/** A layer that the first tier lacks is lacking, too, where the second is cut off. */
+/** If the second tier is cut off, a layer that the first tier lacks is still lacking. */
 static void test_layers_of_first(void **state)
 {
     adcgs_stream stream, part;
@@ -203,7 +203,7 @@ static void test_layers_of_first(void **state)
     clear(&stream, &bytes);
 }
 
-/** Any byte behind the first tier may be wrong: what is left is a part of what was written. */
+/** With any byte behind the first tier changed, the result is a part of the written model. */
 static void test_damaged(void **state)
 {
     adcgs_stream stream, part;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The trainer's passes against an independent reference in binary64: values of
- * primitives and bits, and every gradient against central differences.
+ * The trainer's passes against an independent reference in binary64: values of primitives and bits, and every gradient against
+ * central differences.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,7 +24,7 @@ enum { K = 3, NV = 5, NG = 4, CHUNKS = 2, ETA = 2, OCTAVES = 2, ANCHORS = 70, VA
 
 /* ---- Reference ---- */
 
-/** Evaluate a network on one sample in binary64 straight from the parameters. */
+/** Evaluates a network on one sample in binary64 straight from the parameters. */
 static void ref_mlp(const adcgs_mlp *m, const float *p, const double *x, double *out)
 {
     double h[64], a[64];
@@ -45,7 +45,7 @@ static void ref_mlp(const adcgs_mlp *m, const float *p, const double *x, double 
     }
 }
 
-/** The noise that a test's forward pass added, in steps. Without it steps do not adapt. */
+/** The noise that a test's forward pass added, in steps. Without noise, steps do not adapt. */
 static int noisy;
 static float *noise[ADCGS_P_ANCHOR];
 
@@ -55,7 +55,7 @@ static double noise_at(const adcgs_fmodel *f, int group, uint32_t anchor, int ro
     return noise[group][((size_t)(anchor / 64) * rows + (size_t)row) * 64 + anchor % 64];
 }
 
-/** The factor of a step: 2 to the power of what E_q gives for the f_v that the networks see, within two octaves. */
+/** The factor of a step: 2 to the power of E_q's output for the f_v that the networks see, within two octaves. */
 static double factor_of(const adcgs_fmodel *f, int group, uint32_t anchor, int row)
 {
     double x[64], out[64];
@@ -113,7 +113,7 @@ static void time_code(const adcgs_fmodel *f, double t, double *code)
     const float *z = f->param[ADCGS_P_TIME].p;
     for (int j = 0; j < columns; j++) {
         code[j] = 0;
-        for (int i = -1; i <= rows; i++) { /* the cubic B-spline about row i, of its distance; rows beyond go on in a line */
+        for (int i = -1; i <= rows; i++) { /* cubic B-spline about row i, by distance; rows beyond the ends continue linearly */
             const double first = (double)z[j], last = (double)z[(rows - 1) * columns + j], d = fabs(u - i);
             const double row = i < 0 ? 2 * first - (double)z[columns + j] :
                                i == rows ? 2 * last - (double)z[(rows - 2) * columns + j] : (double)z[i * columns + j];
@@ -123,7 +123,7 @@ static void time_code(const adcgs_fmodel *f, double t, double *code)
     }
 }
 
-/** v turned by a quaternion of length 1. */
+/** Rotates v by a unit quaternion. */
 static void turn(const double q[4], const double v[3], double out[3])
 {
     const double conj[4] = { q[0], -q[1], -q[2], -q[3] }, pure[4] = { 0, v[0], v[1], v[2] };
@@ -133,7 +133,7 @@ static void turn(const double q[4], const double v[3], double out[3])
     memcpy(out, back + 1, 3 * sizeof *out);
 }
 
-/** Its body takes an anchor's primitive along. */
+/** Applies the motion of an anchor's body to its primitive. */
 static void ref_body(const adcgs_fmodel *f, uint32_t anchor, double t, double mean[3], double rotation[4])
 {
     double code[64], q[4], v[3], own[4];
@@ -154,7 +154,7 @@ static void ref_body(const adcgs_fmodel *f, uint32_t anchor, double t, double me
     product(q, own, rotation);
 }
 
-/** What F_omega says of an anchor at time t; nothing of one that does not move. */
+/** The output of F_omega for an anchor at time t; zero for a static anchor. */
 static void ref_omega(const adcgs_fmodel *f, uint32_t anchor, double t, double om[12])
 {
     double x[128];
@@ -166,7 +166,7 @@ static void ref_omega(const adcgs_fmodel *f, uint32_t anchor, double t, double o
         om[i] *= f->moving[anchor];
 }
 
-/** Where in its life an anchor is at time t, -1 to 1 for what is well to be seen of it; 0 for what has no span. */
+/** An anchor's place in its lifetime at time t: -1 to 1 while it is well visible; 0 without a lifetime. */
 static double ref_span(const adcgs_fmodel *f, uint32_t anchor, double t)
 {
     if (!f->params.spans || f->moving[anchor] == 0)
@@ -281,7 +281,7 @@ static void randomise(float *p, size_t n, double size, uint64_t stream)
         p[i] += (float)(size * adcgs_random_normal(7, stream, i));
 }
 
-/** Moments all over the segment and beyond it; some so far away that nothing is left to learn of when they are. */
+/** Lifetimes all over the segment and beyond it. Some are so far away that their times have no gradient. */
 static void spread_lives(adcgs_fmodel *f)
 {
     for (uint32_t a = 0; a < f->n; a++) {
@@ -290,10 +290,10 @@ static void spread_lives(adcgs_fmodel *f)
     }
 }
 
-/** The state is a CPU level, and WITH_SPANS, which comes with bodies, too. */
+/** The state is a CPU level, optionally with WITH_SPANS, which adds lifetimes and bodies. */
 enum { WITH_SPANS = 16 };
 
-/** Two bodies, and anchors of none among theirs. */
+/** Two bodies, with anchors of no body among theirs. */
 static void spread_bodies(adcgs_fmodel *f)
 {
     const size_t columns = (size_t)adcgs_fmodel_time_columns(&f->params), width = f->params.time_width;
@@ -350,7 +350,7 @@ static int teardown(void **state)
     return 0;
 }
 
-/** A fixed random weight for value v of a slot: the scalar whose gradient is tested is the weighted sum of all primitives. */
+/** A fixed random weight for value v of a slot. The tested gradient is that of the weighted sum of all primitives. */
 static double weight_of(size_t slot, int v)
 {
     return adcgs_random_normal(11, (uint64_t)v, slot);
@@ -384,7 +384,7 @@ static void test_forward(void **state)
         }
 }
 
-/** A pass of which the time alone is another gives what a whole one gives. */
+/** A pass that changes the time alone gives the same result as a whole one. */
 static void test_other_time(void **state)
 {
     const fixture *x = *state;
@@ -407,7 +407,7 @@ static double distortion(const adcgs_fmodel *f)
     return ref_sum(f, 0.4f);
 }
 
-/** Compare gradients of a sample of each group's parameters with central differences of fn. */
+/** Compares gradients of a sample of each group's parameters with central differences of fn. */
 static void check_gradients(adcgs_fmodel *f, scalar_fn fn, int first_group)
 {
     for (int g = first_group; g < ADCGS_P_COUNT; g++) {
@@ -458,7 +458,7 @@ static void test_distortion_gradients(void **state)
     check_gradients(x->f, distortion, 0);
 }
 
-/** A group of anchors that all stand still is spared the networks of deformation: values and gradients are as they should be. */
+/** A group of static anchors skips the deformation networks; values and gradients are correct. */
 static void test_still_group(void **state)
 {
     const fixture *x = *state;
@@ -478,11 +478,11 @@ static void test_rate_gradients(void **state)
     assert_float_equal(rate.total, ref_rate(x->f), 5e-6 * rate.total);
     for (int g = ADCGS_P_E_FV; g < ADCGS_P_E_FG + CHUNKS; g++)
         for (size_t i = x->f->mlp[g].b[x->f->mlp[g].hidden]; i < x->f->param[g].n; i++)
-            assert_true(x->f->param[g].g[i] != 0); /* a live gradient into every entropy network */
+            assert_true(x->f->param[g].g[i] != 0); /* a nonzero gradient into every entropy network */
     check_gradients(x->f, ref_rate, 0);
 }
 
-/** Weighted sum of the primitives that a pass with noise makes. */
+/** Weighted sum of the primitives of a pass with noise. */
 static double noisy_sum(const fixture *x)
 {
     const size_t slots = x->pass->primitives.n;
@@ -498,7 +498,7 @@ static double noisy_sum(const fixture *x)
     return sum;
 }
 
-/** The pictures' part of the steps' gradient: through the noise. A rate next to nothing switches it on. */
+/** The part of the steps' gradient that comes from the images, through the noise. A tiny weight of the rate switches it on. */
 static void test_step_gradients(void **state)
 {
     const fixture *x = *state;
@@ -532,7 +532,7 @@ static void test_step_gradients(void **state)
     }
 }
 
-/** Where the motion that F_omega gives takes a place. */
+/** Moves a place by the motion that F_omega gives. */
 static void ref_motion(const double om[12], const double place[3], double out[3])
 {
     double q[4] = { 1, om[9], om[10], om[11] }, v[4] = { 0, place[0], place[1], place[2] }, turned[4], back[4];
@@ -544,7 +544,7 @@ static void ref_motion(const double om[12], const double place[3], double out[3]
         out[a] = back[1 + a] + om[a];
 }
 
-/** The energy that keeps neighbours together, by its definition, in double. */
+/** The rigidity energy between neighbours, by its definition, in double. */
 static double ref_rigid(const adcgs_rigidity *rigid, const adcgs_fmodel *f, double t)
 {
     double energy = 0, om[ANCHORS][12];
@@ -578,7 +578,7 @@ static double rigid_energy(const adcgs_fmodel *f)
     return ref_rigid(rigid_under_test, f, 0.4f);
 }
 
-/** The k-th anchor to i by key, then number; key is the distance, or the lottery's number of those within reach. */
+/** The k-th anchor to i by key, then number. The key is the distance or, if drawn, a random number of those within reach. */
 static int32_t near_by_search(const adcgs_fmodel *f, uint32_t i, int drawn, int k)
 {
     const double reach = (double)ADCGS_RIGIDITY_REACH / (double)f->voxel;
@@ -603,7 +603,7 @@ static int32_t near_by_search(const adcgs_fmodel *f, uint32_t i, int drawn, int 
     return best;
 }
 
-/** Neighbours are those that a search of all anchors finds. */
+/** The neighbours equal those of an exhaustive search. */
 static void test_neighbours(void **state)
 {
     const fixture *x = *state;
@@ -636,7 +636,7 @@ static void test_rigid(void **state)
     adcgs_rigidity_clear(&rigid);
 }
 
-/** Price of size: its value and its gradient by hand; what is not there neither counts nor pays. */
+/** Price of size: its value and gradient against a calculation by hand. Invisible primitives have neither. */
 static void test_area(void **state)
 {
     static const float sd[3][4] = { { 1, 2, 5, 0.5f }, { 2, 3, 7, 0.25f }, { 4, 1, 9, 1 } };
@@ -655,11 +655,11 @@ static void test_area(void **state)
             assert_float_equal(g[a][i], i == 2 ? 1 : 1 + 0.5f / 9 * (s[(a + 1) % 3][i] + s[(a + 2) % 3][i]), 1e-6);
 }
 
-/** The same before viewpoints, between cameras too: what is near looks larger. */
+/** The same with viewpoints, which include places between cameras: a closer primitive counts as larger. */
 static void test_area_seen(void **state)
 {
     static const float camera[5][3] = { { 0, 0, 0 }, { 2, 0, 0 }, { 0, 0, 0 }, { 0, 6, 0 }, { 2, 0, 0 } };
-    static const float at[3][4] = { { 1, 3, 0, 0 }, { 0.25f, 1, 0, 6.01f }, { 0, 0, 0.1f, 0 } }; /* by axis */
+    static const float at[3][4] = { { 1, 3, 0, 0 }, { 0.25f, 1, 0, 6.01f }, { 0, 0, 0.1f, 0 } }; /* one row per axis */
     static const float larger[4] = { 16, 0.5f, 100, 400 };
     static const float one[4] = { 1, 1, 1, 1 };
     const float *const mean[3] = { at[0], at[1], at[2] };
@@ -676,7 +676,7 @@ static void test_area_seen(void **state)
     adcgs_viewpoints_clear(&viewpoints);
 }
 
-/** Many primitives before many viewpoints: each has its nearest, wherever its place in memory. */
+/** Many primitives before many viewpoints: each uses its nearest viewpoint, at any place in memory. */
 static void test_area_many(void **state)
 {
     (void)state;
@@ -703,7 +703,7 @@ static void test_area_many(void **state)
     }
 }
 
-/** Forward with noise; the reference is told the noise, which no parameter changes. */
+/** Forward pass with noise. The reference gets the noise, which no parameter changes. */
 static void forward_noisy(const fixture *x, adcgs_pass *pass)
 {
     adcgs_pass_forward(pass, x->f, 0.4f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_NOISE, .deform = 1, .seed = 5 });
@@ -711,7 +711,7 @@ static void forward_noisy(const fixture *x, adcgs_pass *pass)
     for (int g = 0; g < ADCGS_P_ANCHOR; g++)
         noise[g] = calloc(x->f->param[g].n, sizeof(float));
     noisy = 1;
-    for (int g = 0; g < ADCGS_P_ANCHOR; g++) /* f_v is the first, which the factors of the others take */
+    for (int g = 0; g < ADCGS_P_ANCHOR; g++) /* f_v is first, since the factors of the others depend on it */
         for (uint32_t a = 0; a < ANCHORS; a++)
             for (int r = 0; r < adcgs_fmodel_rows(x->f, g); r++) {
                 const size_t at = (size_t)(adcgs_fmodel_at(x->f, g, a, r) - x->f->param[g].p);
@@ -728,7 +728,7 @@ static void forget_noise(void)
         free(noise[g]);
 }
 
-/* The rate alone moves E_q, f_v and the features through steps that adapt. */
+/* The rate alone gives gradients to E_q, f_v and the features through adaptive steps. */
 static void test_adaptive_rate_gradients(void **state)
 {
     const fixture *x = *state;
@@ -749,7 +749,7 @@ static double total_loss(const adcgs_fmodel *f)
     return distortion(f) + ref_rate(f);
 }
 
-/* So does the distortion: the noise is as large as the step. */
+/* The same for the distortion: the noise scales with the step. */
 static void test_adaptive_gradients(void **state)
 {
     const fixture *x = *state;
@@ -767,7 +767,7 @@ static void test_adaptive_gradients(void **state)
     forget_noise();
 }
 
-/* Factors stay within two octaves; what is beyond may come back but go no further. */
+/* Factors stay within two octaves. Beyond the limit a gradient leads back only, not further out. */
 static void test_adaptive_limits(void **state)
 {
     const fixture *x = *state;
@@ -782,13 +782,13 @@ static void test_adaptive_limits(void **state)
         adcgs_pass_backward(x->pass, x->f, 1, 1, 1, 0, NULL);
         for (int i = 0; i < m->out; i++) {
             const float g = x->f->param[ADCGS_P_E_STEPS].g[m->b[m->hidden] + (size_t)i];
-            assert_true(up ? g >= 0 : g < 0); /* the rate wants large steps */
+            assert_true(up ? g >= 0 : g < 0); /* the rate favours large steps */
         }
         forget_noise();
     }
 }
 
-/* Rounding takes the factors that it is given. */
+/* Rounding uses the given factors. */
 static void test_adaptive_rounding(void **state)
 {
     const fixture *x = *state;
@@ -807,7 +807,7 @@ static void test_adaptive_rounding(void **state)
             }
 }
 
-/* E_q begins at zero, so that switching it on changes no bit. */
+/* E_q starts at zero, so that switching it on changes no bit. */
 static void test_adaptive_start(void **state)
 {
     const fixture *x = *state;
@@ -834,7 +834,7 @@ static void test_adaptive_start(void **state)
     free(with);
 }
 
-/** What is asked of one anchor is what the pass does to its primitives. */
+/** The presence of a single anchor equals the presence in the pass. */
 static void test_presence(void **state)
 {
     const fixture *x = *state;
@@ -900,7 +900,7 @@ int main(void)
             { "neighbours", test_neighbours, setup, teardown, state },
             { "rigid", test_rigid, setup, teardown, state },
             { "area", test_area, NULL, NULL, state },
-            { "area as it is seen", test_area_seen, NULL, NULL, state },
+            { "area with viewpoints", test_area_seen, NULL, NULL, state },
             { "area of many", test_area_many, NULL, NULL, state },
             { "threads", test_threads, setup, teardown, state },
         };

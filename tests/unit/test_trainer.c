@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Whole training runs in miniature: stopping and going on, densification, recovery
- * from what is not a number, and the numbers that end up in a stream.
+ * Whole training runs in miniature: stopping and continuing, densification, recovery from values that are not numbers, and the
+ * numbers that end up in a stream.
  */
 #include "tiny_scene.h"
 
@@ -49,7 +49,7 @@ static void assert_same(const adcgs_buffer *a, const adcgs_buffer *b)
     assert_memory_equal(a->data, b->data, a->size);
 }
 
-/** Mean square of what a picture of so many tiers is off the whole one. */
+/** Mean squared difference between the image of the first tiers and that of all tiers. */
 static double wrong_with(const adcgs_trainer *t, const adcgs_model *model, int tiers)
 {
     const adcgs_view *view = &t->views[0].view;
@@ -75,7 +75,7 @@ static double wrong_with(const adcgs_trainer *t, const adcgs_model *model, int t
     return sum / (double)n;
 }
 
-/** Each tier has the share of anchors that it should, and brings the picture nearer; the run does not depend on threads. */
+/** Each tier has its share of the anchors and brings the image closer to the whole one. The run does not depend on threads. */
 static void tiers_are_of_falling_worth(void **state)
 {
     adcgs_train_config config = small_config();
@@ -118,7 +118,7 @@ static int all_finite(const adcgs_fmodel *f)
 
 /* ---- Checkpoints ---- */
 
-/** In each stage: a restored run is the stored one to the bit, and both end where a run that never stopped ends. */
+/** In each stage, a restored run equals the stored one to the bit. Both end in the same state as a run that never stopped. */
 static void restored_runs_go_on_in_lockstep(void **state)
 {
     static const uint32_t stops[] = { 0, 30, 90, 140, 180, 190 };
@@ -175,7 +175,7 @@ static void checkpoints_are_checked(void **state)
     adcgs_buffer_clear(&b);
 }
 
-/** Whatever setting is another one is named, from when on the run is bound to it. */
+/** The error names any setting that differs, as soon as the run depends on it. */
 static void checkpoints_name_what_differs(void **state)
 {
     const adcgs_train_config config = all_stages_config();
@@ -203,7 +203,7 @@ static void checkpoints_name_what_differs(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** However a configuration is made, a trainer is not made of what is out of range. */
+/** The trainer checks its configuration itself: values out of range are refused, however they were set. */
 static void bad_configurations_make_no_trainer(void **state)
 {
     adcgs_train_config config = small_config();
@@ -229,7 +229,7 @@ static void refuse_checkpoint(const adcgs_scene *other, const char *what)
     adcgs_trainer_free(&t);
 }
 
-/** A file of a run goes on with the scene that it was made from, and says what of another is not the same. */
+/** A checkpoint continues with the scene that it was made from; for another scene the error names the difference. */
 static void checkpoints_know_their_scene(void **state)
 {
     const adcgs_train_config config = all_stages_config();
@@ -260,7 +260,7 @@ static void checkpoints_know_their_scene(void **state)
     refuse_checkpoint(scene, "different timestamps");
     *v = kept;
 
-    /* One level of one sample of one picture. */
+    /* One level of one sample of one image. */
     FILE *file = fopen(v->path, "r+b");
     assert_non_null(file);
     assert_int_equal(fseek(file, -1, SEEK_END), 0);
@@ -311,7 +311,7 @@ static void densification_keeps_order_and_budget(void **state)
     adcgs_trainer_free(&c.t);
 }
 
-/** Anchors that nobody saw since the last densification go, the others stay, and their parameters with them. */
+/** Densification removes anchors that no view saw since the last one. The others stay and keep their parameters. */
 static void densification_prunes_what_is_not_seen(void **state)
 {
     adcgs_train_config config = all_stages_config();
@@ -325,7 +325,7 @@ static void densification_prunes_what_is_not_seen(void **state)
         t->stats.weight[i] = t->stats.opacity[i] = seen ? 1000.0f * (float)t->stats.n : 0;
     }
     memcpy(gone, t->f->pos[3], sizeof gone);
-    left = t->f->n - (t->f->n + 60) / 64; /* less one of each group of 64 */
+    left = t->f->n - (t->f->n + 60) / 64; /* minus one of each group of 64 */
     const float next = *adcgs_fmodel_at(t->f, ADCGS_P_FG, 4, (int)k);
     assert_int_equal(adcgs_densify(t, 0.4, &error), ADCGS_OK);
     assert_int_equal(t->f->n, left);
@@ -335,7 +335,7 @@ static void densification_prunes_what_is_not_seen(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** A run of 50 iterations, then faint primitives: those of number 1 and all of anchor 5, which weigh this to the others' 1. */
+/** Runs 50 iterations, then makes primitive 1 of each anchor and all of anchor 5 faint: weight, against 1 of the others. */
 static adcgs_trainer *make_faint(const adcgs_train_config *config, float weight)
 {
     adcgs_trainer *t = make_trainer(config, pool);
@@ -351,7 +351,7 @@ static adcgs_trainer *make_faint(const adcgs_train_config *config, float weight)
     return t;
 }
 
-/** When it is decided what stays, faint primitives go, and anchors that have no other. */
+/** Pruning removes faint primitives, and anchors that have no other. */
 static void faint_primitives_go(void **state)
 {
     const adcgs_train_config config = all_stages_config();
@@ -365,7 +365,7 @@ static void faint_primitives_go(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** Of a scene that is made of faint primitives no more than a tenth goes, the faintest. */
+/** In a scene made of faint primitives, pruning removes at most a tenth of the rendered weight: the faintest primitives. */
 static void what_faint_primitives_make_stays(void **state)
 {
     const adcgs_train_config config = all_stages_config();
@@ -389,7 +389,7 @@ static void what_faint_primitives_make_stays(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** How many anchors still move when that is decided after 50 iterations, where all that is drawn is so opaque. */
+/** Number of anchors that still move after 50 iterations and the decision on motion, where every primitive has this opacity. */
 static uint32_t moving_anchors(const adcgs_train_config *config, float opacity)
 {
     adcgs_trainer *t = make_trainer(config, pool);
@@ -407,27 +407,27 @@ static uint32_t moving_anchors(const adcgs_train_config *config, float opacity)
     return moving;
 }
 
-/** The fainter the layers that a scene is made of, the less of one has to move. Opaque ones are all alike. */
+/** The fainter the layers of a scene, the smaller the motion that keeps an anchor dynamic. Opaque layers do not differ. */
 static void faint_layers_move_together(void **state)
 {
     adcgs_train_config config = all_stages_config();
     config.keep_opacity = 0;
-    config.params.spans = 0; /* what lives for a while moves anyhow */
+    config.params.spans = 0; /* primitives with a lifetime are dynamic in any case */
     config.still_below = 10;
     const uint32_t opaque = moving_anchors(&config, 0.9f), faint = moving_anchors(&config, 0.02f);
-    print_message("%u move where things are opaque, %u where they are faint\n", opaque, faint);
+    print_message("%u anchors move with opaque layers, %u with faint ones\n", opaque, faint);
     assert_int_equal(moving_anchors(&config, 0.5f), opaque);
     assert_true(faint > opaque);
 }
 
-/** Anchors that are drawn where no camera's pictures ever change are static, whatever networks make of them; others move. */
+/** Anchors in regions where no camera's images change become static, whatever motion the networks give them. The others move. */
 static void what_never_changes_is_static(void **state)
 {
     adcgs_train_config config = all_stages_config();
     config.keep_opacity = 0;
     config.params.spans = 0;
-    config.still_below = 1e-30f; /* all that the networks move at all */
-    config.start_anchors = config.max_anchors = 1500; /* of which some are where nothing changes */
+    config.still_below = 1e-30f; /* any motion of the networks at all */
+    config.start_anchors = config.max_anchors = 1500; /* some of them in regions where nothing changes */
     adcgs_trainer *t = make_trainer(&config, pool);
     uint32_t stop = 50, changing = 0, moving = 0;
     run(t, stop_at, &stop);
@@ -448,7 +448,7 @@ static void what_never_changes_is_static(void **state)
     assert_int_equal(t->f->n, n);
     for (uint32_t i = 0; i < n; i++)
         moving += t->f->moving[i] != 0;
-    print_message("%u of %u are drawn where something changes\n", changing, n);
+    print_message("%u of %u anchors are in changing regions\n", changing, n);
     assert_true(changing > 0 && changing < n);
     assert_int_equal(moving, changing);
     adcgs_trainer_free(&t);
@@ -458,13 +458,13 @@ static void what_never_changes_is_static(void **state)
 
 typedef struct poison {
     adcgs_trainer *t;
-    int group;   /* of the parameter, or -1: a picture */
-    int repair;  /* the picture is whole again after the first rollback, and spoilt at each report otherwise */
+    int group;   /* of the parameter, or -1: an image */
+    int repair;  /* after the first rollback the image is whole again; otherwise each report spoils it */
     int given;
     uint32_t at;
 } poison;
 
-/** The first view's picture with another value in one place. */
+/** The first view's image with one value replaced. */
 static void put_value(adcgs_trainer *t, float value)
 {
     assert_int_equal(adcgs_pictures_get(t->pictures, 0, t->taken, &error), ADCGS_OK);
@@ -479,7 +479,7 @@ static int give_poison(void *user, const adcgs_train_report *r)
     if ((!p->given || lasting) && r->iteration >= p->at) {
         p->given = 1;
         if (p->group < 0)
-            put_value(p->t, INFINITY); /* NaN is a mask */
+            put_value(p->t, INFINITY); /* NaN would be a mask */
         else
             p->t->f->param[p->group].p[p->group == ADCGS_P_FG ? 64 : 0] = NAN;
     }
@@ -574,13 +574,13 @@ static void decoded_values_are_their_own_quantisation(void **state)
     }
 }
 
-/** Whether a value is so near half-way between two levels that either is right. */
+/** True if a value is so near the middle between two levels that either is right. */
 static int is_tie(double value, double level, double other)
 {
     return fabs(value - (level + other) / 2) < 1e-5 * fabs(level - other);
 }
 
-/** The values that rounding shows to the networks are those that a decoder will have, steps that adapt included. */
+/** The values that rounding passes to the networks are the decoded ones, adaptive steps included. */
 static void rounding_is_decoding(void **state)
 {
     const adcgs_train_config config = all_stages_config();
@@ -637,14 +637,14 @@ static double flag_bytes(adcgs_model *model)
     return size;
 }
 
-/** What a run reports of each stream when it has fixed the values is what the stream takes in the file. */
+/** The bits that a run reports for each stream after fixing the values are the bits of the stream in the file. */
 static void estimated_bits_are_written_bytes(void **state)
 {
-    enum { LARGE = 1000, FRAMING = 10 }; /* of a sub-stream: its length, check sum and end */
+    enum { LARGE = 1000, FRAMING = 10 }; /* per sub-stream: its length, checksum and end */
     adcgs_train_config config = all_stages_config();
     config.start_anchors = config.max_anchors = 600;
     config.params.k = 6;
-    config.tiers = 1; /* each has flags and sub-streams of its own */
+    config.tiers = 1; /* each tier has its own flags and sub-streams */
     adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_stream stream;
     adcgs_buffer bytes;
@@ -674,7 +674,7 @@ static void estimated_bits_are_written_bytes(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** Whether channel c of eta, rounded, is an input of 0 to E_fv for every anchor: within an eighth of a step. */
+/** True if channel c of eta, rounded, is an input of 0 to E_fv for every anchor: within an eighth of a step. */
 static int eta_is_zero(const adcgs_trainer *t, int c)
 {
     const adcgs_fmodel *f = t->f;
@@ -704,8 +704,8 @@ static void check_reach(const adcgs_trainer *t, int network)
 }
 
 /**
- * The rate alone leads every weight of every entropy network somewhere, in each stage. But for the weights that an input of 0
- * leaves without effect: these, and no others, have no gradient.
+ * In each stage the rate alone gives every weight of every entropy network a gradient. Exactly the weights that an input of 0
+ * leaves without effect have none.
  */
 static void rate_reaches_every_weight(void **state)
 {
@@ -739,7 +739,7 @@ static void rate_reaches_every_weight(void **state)
     }
 }
 
-/** The first view's picture of the model as it is, 32 x 32. */
+/** The first view's image of the current model, 32 x 32. */
 static void draw(adcgs_trainer *t, float image[3 * 32 * 32])
 {
     adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .deform = 1 });
@@ -747,7 +747,7 @@ static void draw(adcgs_trainer *t, float image[3 * 32 * 32])
         fail_msg("%s", error.text);
 }
 
-/** What a decoder draws of the model's quantised values is what the trainer draws of them. */
+/** The image from the decoded, quantised values equals the trainer's image. */
 static void check_picture(adcgs_trainer *t)
 {
     static float here[3 * 32 * 32], there[3 * 32 * 32];
@@ -764,13 +764,13 @@ static void check_picture(adcgs_trainer *t)
     draw(t, here);
     if (adcgs_raster_forward(t->raster, &primitives, &t->views[0].view, scene->background, 0.3f, there, 0, &error))
         fail_msg("%s", error.text);
-    print_message("decoded and trained: %.1f dB\n", adcgs_psnr(here, there, ADCGS_COUNTOF(here)));
+    print_message("decoded image against the trainer's: %.1f dB\n", adcgs_psnr(here, there, ADCGS_COUNTOF(here)));
     assert_true(adcgs_psnr(here, there, ADCGS_COUNTOF(here)) > 70);
     adcgs_splat_free(&splat);
     adcgs_model_clear(&model, NULL);
 }
 
-/** What motion has to pay is a part of its networks, since most of their hidden units go later. */
+/** Motion has to pay for a part of its networks only, since most of their hidden units are pruned later. */
 static void motion_pays_for_little(void **state)
 {
     const adcgs_train_config config = all_stages_config();
@@ -782,7 +782,7 @@ static void motion_pays_for_little(void **state)
         assert_int_equal(adcgs_sample_loss(t, 32, 0, &stopped, &error), ADCGS_OK);
         assert_int_equal(adcgs_sample_loss(t, 32, 1, &moved, &error), ADCGS_OK);
         const double bits = 7.0 * (double)(t->f->mlp[ADCGS_P_OMEGA].n + t->f->mlp[ADCGS_P_VARPI].n + t->f->mlp[ADCGS_P_TIME].n);
-        print_message("stopped %g, moving %g\n", stopped, moved);
+        print_message("loss without motion %g, with motion %g\n", stopped, moved);
         assert_true(stopped > 1.01 * moved);
         t->lambda = (much ? 20 : 2) * (stopped - 1.01 * moved) / bits * 0x1p23;
         assert_int_equal(adcgs_weigh_motion(t, &error), ADCGS_OK);
@@ -818,9 +818,9 @@ static void still_models_carry_no_motion(void **state)
     adcgs_trainer_free(&t);
 }
 
-/* ---- Parts of pictures ---- */
+/* ---- Parts of images ---- */
 
-/** A crop of a view is drawn as it is in the whole, and its loss is that of its pixels. */
+/** A crop of a view is rendered exactly as in the whole image, and its loss is that of its pixels. */
 static void crops_are_parts_of_pictures(void **state)
 {
     enum { X = 16, Y = 9, W = 16, H = 20, SIDE = 32 };
@@ -854,7 +854,7 @@ static void crops_are_parts_of_pictures(void **state)
 
 /* ---- Without compression ---- */
 
-/** PSNR between the picture of the model and that of its quantised values, which replace them. */
+/** PSNR between the image of the model and the image of its quantised values, which replace the model's values. */
 static double loss_of_quantisation(adcgs_trainer *t, adcgs_model *model)
 {
     static float before[3 * 32 * 32], after[3 * 32 * 32];
@@ -919,7 +919,7 @@ static float *time_row(adcgs_trainer *t, int row)
     return t->f->param[ADCGS_P_TIME].p + (size_t)row * t->f->params.time_width;
 }
 
-/** Views come in from the middle of time outwards; a row reached begins where its neighbour stands, others stay. */
+/** Views enter from the middle of time outwards. A newly reached time row starts as a copy of its neighbour; others stay. */
 static void windows_grow_outwards(void **state)
 {
     const adcgs_train_config config = all_stages_config();
@@ -950,7 +950,7 @@ static void windows_grow_outwards(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** The mean of three states, the same to the bit where they are; a model of another size begins a mean of its own. */
+/** The mean of three states, exact to the bit where the states agree. A model of another size starts a mean of its own. */
 static void averages_are_means(void **state)
 {
     const adcgs_train_config config = all_stages_config();
@@ -959,7 +959,7 @@ static void averages_are_means(void **state)
     adcgs_param *varied = &f->param[ADCGS_P_OMEGA], *same = &f->param[ADCGS_P_THETA];
     adcgs_weight_average average = { .n = 0 };
     const float begin = varied->p[0], kept = same->p[1];
-    adcgs_weight_average_take(&average, f); /* of nothing: nothing */
+    adcgs_weight_average_take(&average, f); /* the average of no states changes nothing */
     assert_true(varied->p[0] == begin);
     for (int i = 0; i < 3; i++) {
         varied->p[0] = (const float[]){ 1, 2, 6 }[i];
@@ -981,7 +981,7 @@ static void averages_are_means(void **state)
 
 /* ---- Brightness of cameras ---- */
 
-/** All pictures times this. */
+/** Multiplies all images by a factor. */
 static void dim(adcgs_trainer *t, float by)
 {
     for (uint32_t i = 0; i < t->n_views; i++) {
@@ -993,7 +993,7 @@ static void dim(adcgs_trainer *t, float by)
     }
 }
 
-/** What was filmed with half the light is coded twice as finely; a lambda that is asked for is taken as it is. */
+/** A scene filmed with half the light is coded twice as finely. A lambda set by the user is used unchanged. */
 static void lambda_follows_contrast(void **state)
 {
     adcgs_train_config config = small_config();
@@ -1008,12 +1008,12 @@ static void lambda_follows_contrast(void **state)
     dim(t, 0.5f);
     assert_int_equal(adcgs_contrast(t, &half, &error), ADCGS_OK);
     assert_float_equal(half, contrast / 2, 1e-4 * contrast);
-    assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK); /* it was measured, and stays */
+    assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK); /* the contrast has been measured and stays */
     assert_float_equal(t->lambda, lambda, 0);
     t->contrast = 0;
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
     assert_float_equal(t->lambda, lambda / 2, 1e-4 * lambda);
-    dim(t, 0); /* one colour: what is coded still has a price */
+    dim(t, 0); /* images of one colour: the rate still has a price */
     t->contrast = 0;
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
     assert_true(t->lambda > 0);
@@ -1024,8 +1024,8 @@ static void lambda_follows_contrast(void **state)
 }
 
 /**
- * Pictures of three cameras in turns: a half of each, or of the last camera a share of its own, is within a level of a black that
- * is the camera's, levels of 255, and the rest is bright.
+ * The images of three cameras in turn: half of each image (of the last camera's: last_share) is within one level of the camera's
+ * black, in levels of 255. The rest is bright.
  */
 static void darken(adcgs_trainer *t, const float black[3], float last_share)
 {
@@ -1039,7 +1039,7 @@ static void darken(adcgs_trainer *t, const float black[3], float last_share)
     }
 }
 
-/** What cameras add to all of their pictures is found where all of them see black, and only there; and it is taken off. */
+/** A camera's black offset is found only where all cameras see black. The exposure correction then removes it. */
 static void black_levels_are_found(void **state)
 {
     adcgs_train_config config = small_config();
@@ -1063,7 +1063,7 @@ static void black_levels_are_found(void **state)
     adcgs_exposure_even(&t->exposure, 1, taken, even, 1); /* the second view is the second camera's */
     for (int c = 0; c < 3; c++)
         assert_float_equal(even[c], taken[c] + 8.0f / 255, 0.3 / 255);
-    /* A camera that has too little of black, or sees a darkness of its own, says nothing of any. */
+    /* A camera that sees too little black, or a darkness of its own, prevents an estimate for all cameras. */
     darken(t, black, 0.1f);
     assert_int_equal(adcgs_black_levels(t, &error), ADCGS_OK);
     for (int i = 0; i < 3; i++)
@@ -1083,7 +1083,9 @@ static void follow_picture(adcgs_exposure *exposure, uint32_t view, const float 
     adcgs_exposure_follow(exposure, view, &sums);
 }
 
-/** Pictures by cameras of these gains, followed in the order they were taken; even: what the mean camera would have taken. */
+/**
+ * Images by cameras of these gains, followed in capture order. even receives the images as the mean camera would have taken them.
+ */
 static uint32_t follow_cameras(const float *gain, uint32_t n_views, int still, float even[][3 * PLANE], const float *drawn)
 {
     adcgs_scene_view views[CAMERAS * PICTURES] = { { .time = 0 } };
@@ -1111,22 +1113,22 @@ static void cameras_are_evened_out(void **state)
     float drawn[3 * PLANE], even[CAMERAS * PICTURES][3 * PLANE];
     for (int j = 0; j < 3 * PLANE; j++)
         drawn[j] = 0.1f + (float)(j * 29 % 101) / 250;
-    /* Gains of mean 1 are found but for 3 %, whatever the pictures show. */
+    /* Gains of mean 1 are found to within 3 %, for any images. */
     assert_int_equal(follow_cameras((const float[]){ 0.5f, 1, 2 }, CAMERAS * PICTURES, 0, even, drawn), CAMERAS);
     for (int i = 0; i < CAMERAS * PICTURES; i++) {
         const double left = exp(0.03 * (i % CAMERAS - 1));
         for (int j = 0; j < 3 * PLANE; j++)
             assert_float_equal(even[i][j], left * (double)drawn[j], 1e-5);
     }
-    /* Cameras that agree are left alone, to the bit. */
+    /* Images of cameras that agree stay unchanged to the bit. */
     const float near[] = { 0.99f, 1, 1.01f };
     assert_int_equal(follow_cameras(near, CAMERAS * PICTURES, 0, even, drawn), CAMERAS);
     for (int i = 0; i < CAMERAS * PICTURES; i++)
         for (int j = 0; j < 3 * PLANE; j++)
             assert_true(even[i][j] == near[i % CAMERAS] * drawn[j]);
-    /* Too few pictures a camera tell nothing of it. */
+    /* Too few images per camera give no estimate. */
     assert_int_equal(follow_cameras(near, CAMERAS * 3, 0, even, drawn), 0);
-    /* But where all stands still one picture is enough, once there has been one of each. */
+    /* In a static scene one image per camera is enough, as soon as every camera has one. */
     assert_int_equal(follow_cameras((const float[]){ 0.5f, 1, 2 }, CAMERAS, 1, even, drawn), CAMERAS);
     for (int i = 0; i < CAMERAS; i++)
         assert_float_equal(even[i][7], exp(0.03 * (i % CAMERAS - 1)) * (double)drawn[7], 1e-5);
@@ -1146,7 +1148,7 @@ static void cameras_are_evened_out(void **state)
     adcgs_exposure_clear(&exposure);
 }
 
-/** No gain leaves the range of the images' brightness, whatever a model says. */
+/** No gain leaves the range of the images' brightness, for any model. */
 static void gains_are_bounded_by_images(void **state)
 {
     adcgs_scene_view views[CAMERAS] = { { .time = 0 } };
@@ -1159,7 +1161,7 @@ static void gains_are_bounded_by_images(void **state)
     adcgs_exposure_bound(&exposure, brightness);
     for (uint32_t i = 0; i < CAMERAS; i++) {
         for (int j = 0; j < 3 * PLANE; j++) {
-            drawn[j] = i ? 0.3f : 0.1f; /* haze before the first camera doubles what is seen there */
+            drawn[j] = i ? 0.3f : 0.1f; /* haze before the first camera doubles the brightness there */
             taken[j] = 0.3f;
         }
         follow_picture(&exposure, i, drawn, taken);
@@ -1169,7 +1171,7 @@ static void gains_are_bounded_by_images(void **state)
     adcgs_exposure_clear(&exposure);
 }
 
-/** A burnt pixel is a lower bound of what the mean camera sees, unless it is the background of an image with alpha. */
+/** An overexposed pixel is a lower bound of the mean camera's value, except where it is the background of an image with alpha. */
 static void burnt_pixels_are_lower_bounds(void **state)
 {
     adcgs_scene_view views[2] = { { .time = 0 } };
@@ -1182,7 +1184,7 @@ static void burnt_pixels_are_lower_bounds(void **state)
         for (int c = 0; c < 3; c++)
             exposure.cameras[i] = (adcgs_exposure_camera){ .square = { 1, 1, 1 }, .gain = { i ? 1 : 2, i ? 1 : 2, i ? 1 : 2 } };
     for (int j = 0; j < 3 * PLANE; j++) {
-        target[j] = j % PLANE == 0 ? 1 : j % PLANE == 1 ? 0.5f : j == 2 ? 1 : 0.25f; /* white, grey, and red that is burnt */
+        target[j] = j % PLANE == 0 ? 1 : j % PLANE == 1 ? 0.5f : j == 2 ? 1 : 0.25f; /* white, grey, and overexposed red */
         drawn[j] = 1.5f;
     }
     adcgs_exposure_even(&exposure, 0, target, target, PLANE);
@@ -1190,7 +1192,7 @@ static void burnt_pixels_are_lower_bounds(void **state)
     assert_true(even_white < 0.8f);
     adcgs_exposure_allow_burnt(&exposure, 0, drawn, white, target, PLANE);
     assert_true(target[0] == even_white && target[1] == grey && target[2] == 1.5f && target[PLANE + 2] < 0.25f);
-    drawn[2] = 0.5f * red; /* less than it says is wrong all the same */
+    drawn[2] = 0.5f * red; /* a value below the bound is still an error */
     target[2] = red;
     adcgs_exposure_allow_burnt(&exposure, 0, drawn, white, target, PLANE);
     assert_true(target[2] == red);
@@ -1199,7 +1201,7 @@ static void burnt_pixels_are_lower_bounds(void **state)
     adcgs_exposure_clear(&exposure);
 }
 
-/** Where nothing is in front of the background of images with alpha, there is no error, whatever the gain. */
+/** Where nothing covers the background of images with alpha, there is no error, at any gain. */
 static void backgrounds_have_no_gain(void **state)
 {
     adcgs_scene white = *scene;
@@ -1238,8 +1240,8 @@ static void backgrounds_have_no_gain(void **state)
 }
 
 /**
- * Where several views share a moment, neighbours move as pictures say, size has its price at once and squares their whole share,
- * unless told otherwise.
+ * Where several views share a timestamp, defaults change: no rigidity loss, the scale regulariser from the start, and the whole
+ * weight of the squared error. Settings given by the user win.
  */
 static void moments_shared_by_views_change_settings(void **state)
 {
@@ -1263,7 +1265,7 @@ static void moments_shared_by_views_change_settings(void **state)
         }
 }
 
-/** Time goes along a spline where fewer than half of the cameras see a moment, unless told otherwise. */
+/** Time follows a spline where fewer than half of the cameras see each frame, except if the user set it otherwise. */
 static void few_cameras_make_time_smooth(void **state)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -1273,7 +1275,7 @@ static void few_cameras_make_time_smooth(void **state)
     adcgs_scene_view *views = malloc(n * sizeof *views);
     assert_true(views && n >= 2 * scene->n_times);
     memcpy(views, scene->views[ADCGS_SPLIT_TRAIN], n * sizeof *views);
-    for (uint32_t i = 0; i < n; i++) /* from half of time on cameras stand somewhere else, so that there are twice as many */
+    for (uint32_t i = 0; i < n; i++) /* in the second half of time cameras stand elsewhere, so that there are twice as many */
         views[i].camera.cam_to_world[3] += views[i].time > scene->duration / 2 ? 0.01 : 0;
     few.views[ADCGS_SPLIT_TRAIN] = views;
     alone.n_times = n;
@@ -1286,7 +1288,7 @@ static void few_cameras_make_time_smooth(void **state)
             assert_int_equal(t->f->params.smooth_time, by_hand ? !i : i > 0);
             const adcgs_quantise_options how = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor };
             adcgs_model model;
-            t->f->is_part = 1; /* motion stays in the stream whether anything moves or not */
+            t->f->is_part = 1; /* keeps motion in the stream even if nothing moves */
             adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_ROUND });
             assert_int_equal(adcgs_quantise(&model, t->f, &how, &error), ADCGS_OK);
             assert_int_equal(model.params.smooth_time, t->f->params.smooth_time);
@@ -1304,7 +1306,7 @@ static void few_cameras_make_time_smooth(void **state)
 
 /* ---- Time ---- */
 
-/** What the rates of a kind are told to be is what its groups get, and no other. */
+/** The learning-rate scale of a kind applies to its groups and to no other. */
 static void rates_follow_their_kind(void **state)
 {
     adcgs_train_config config = small_config();
@@ -1325,7 +1327,7 @@ static void rates_follow_their_kind(void **state)
     adcgs_trainer_free(&told);
 }
 
-/** Learning rates stay as they begin until their moment, then fall by equal factors in equal times. */
+/** Learning rates are constant until rates_fall_from, then fall by equal factors in equal times. */
 static void rates_stay_then_fall(void **state)
 {
     adcgs_train_config c = { .rates_fall_from = 0.5f };
@@ -1339,13 +1341,13 @@ static void rates_stay_then_fall(void **state)
     assert_float_equal(adcgs_train_rate(&c, 8, 2, 1), 8, 0);
 }
 
-/** Seconds of an iteration of a make-believe machine: so much of it, at full resolution, is not for pixels. */
+/** Seconds per iteration of an imaginary machine: this share of an iteration at full resolution is not spent on pixels. */
 static double true_cost(int divide, double overhead)
 {
     return 0.01 * (overhead + (1 - overhead) / (divide * divide));
 }
 
-/** What a run still takes, told from its beginning on: never negative, never more than before by much, and near the truth. */
+/** The estimate of the remaining time is never negative, never rises by much, and is near the truth from the start on. */
 static void time_left_follows_the_schedule(void **state)
 {
     static const double overheads[] = { 0.05, 0.2, 0.6, 1 };
@@ -1375,7 +1377,7 @@ static void time_left_follows_the_schedule(void **state)
                 before = told;
             }
             assert_true(before < 1e-9);
-            /* A limit ends it, known or not, and what is over is not negative. */
+            /* The time limit ends the run, with or without an estimate. After its end the remaining time is 0, not negative. */
             c.time_limit = 7;
             assert_true(adcgs_time_left_of(&left, &c, 0, 6.5) <= 0.5 && adcgs_time_left_of(&left, &c, 0, 99) == 0);
             left = (adcgs_time_left){ .load = 0 };
@@ -1384,7 +1386,7 @@ static void time_left_follows_the_schedule(void **state)
         }
 }
 
-/** Loading between resolutions counts, as long as it is to come. */
+/** Future loading between resolutions counts. */
 static void time_left_knows_loading(void **state)
 {
     adcgs_train_config c = small_config();
@@ -1397,7 +1399,7 @@ static void time_left_knows_loading(void **state)
     assert_true(adcgs_time_left_of(&left, &c, 9, 0) == 1);
 }
 
-/** The limit counts from where the program says that it began; when it is over before the first iteration, there is no run. */
+/** The time limit counts from the start of the program. If it is over before the first iteration, there is no run. */
 static void time_limits_count_what_was_before(void **state)
 {
     adcgs_train_config config = small_config();
@@ -1409,7 +1411,7 @@ static void time_limits_count_what_was_before(void **state)
     assert_int_equal(t->iteration, 0);
     assert_true(strstr(error.text, "time limit of 5 s") && strstr(error.text, "before training began"));
     adcgs_trainer_free(&t);
-    /* What is left is many times what a short run takes, however busy the machine is. */
+    /* The remaining time is many times that of a short run, however busy the machine is. */
     config.time_limit = 0;
     config.iterations = 10;
     const double begin = adcgs_seconds();
@@ -1437,7 +1439,7 @@ static int is_masked(int i, int width)
     return x >= MASK_FROM && x < MASK_UNTIL && y >= MASK_FROM && y < MASK_UNTIL;
 }
 
-/** A copy of a view's picture with something else where the mask is, under a name of its own. */
+/** Writes a copy of a view's image, under a name of its own, with other values behind the mask. */
 static void put_behind_mask(adcgs_scene_view *v, uint32_t number, float value)
 {
     char name[64];
@@ -1480,10 +1482,10 @@ static void run_behind_mask(float value, adcgs_buffer *end, double *psnr)
     free(views);
 }
 
-/** What is behind a mask has no part in anything: whatever is there, the run ends the same, to the bit. */
+/** Pixels behind a mask have no effect: whatever they hold, the run ends in the same state, to the bit. */
 static void masked_pixels_have_no_part(void **state)
 {
-    const int side = 32; /* of the tiny scene's pictures */
+    const int side = 32; /* of the tiny scene's images */
     adcgs_image mask;
     adcgs_buffer dark, bright;
     double psnr[2];
@@ -1500,9 +1502,9 @@ static void masked_pixels_have_no_part(void **state)
     adcgs_buffer_clear(&bright);
 }
 
-/* ---- What is missing ---- */
+/* ---- Missing content ---- */
 
-/** Every view shows the background and one dot: of the place x, or somewhere of its own. */
+/** Every view shows the background and one dot: at the projection of x, or scattered, elsewhere in each view. */
 static void show_dot(adcgs_trainer *t, const float x[3], int scattered)
 {
     static const float colour[3] = { 0.9f, 0.6f, 0.3f };
@@ -1525,7 +1527,7 @@ static void show_dot(adcgs_trainer *t, const float x[3], int scattered)
     }
 }
 
-/** A thing that no primitive is near to is found where the cameras of a moment say it is; what they do not agree on is not. */
+/** An object without a primitive near it is found where the cameras of a frame agree on its place, and only then. */
 static void missing_things_are_found(void **state)
 {
     enum { MOST = 64 };
@@ -1544,9 +1546,9 @@ static void missing_things_are_found(void **state)
         for (int a = 0; a < 3; a++)
             assert_true(fabsf(places[i].x[a] - x[a]) < 2 * places[i].size);
         assert_true(places[i].size > 0.01f && places[i].size < 0.2f && places[i].score > 0);
-        assert_float_equal(places[i].rgb[0] - scene->background[0], 0.9, 2e-5); /* pictures have 16 bits */
+        assert_float_equal(places[i].rgb[0] - scene->background[0], 0.9, 2e-5); /* images have 16 bits */
     }
-    /* Densification puts an anchor there, if the scene's own points may have left it out. */
+    /* Densification puts an anchor there if the scene's own points may have left it out. */
     adcgs_scene with_points = *scene;
     with_points.points.n = ADCGS_POINTS_LEAST;
     t->scene = &with_points;
@@ -1567,7 +1569,7 @@ static void missing_things_are_found(void **state)
     assert_int_equal(n, 0);
     show_dot(t, x, 0);
     for (uint32_t i = 0; i < t->n_views; i++)
-        t->views[i].t = (float)i / (float)t->n_views; /* no two at a time */
+        t->views[i].t = (float)i / (float)t->n_views; /* no two views share a timestamp */
     assert_int_equal(adcgs_residual_find(t, places, MOST, &n, &error), ADCGS_OK);
     assert_int_equal(n, 0);
     adcgs_trainer_free(&t);

@@ -3,7 +3,7 @@
 #include "layout_files.h"
 #include "opened_scene.h"
 
-/** A transforms file of n frames; the fields of a frame besides its pose are a format of its number, given twice. */
+/** A transforms file of n frames. The fields of a frame in addition to its pose are a format of its number, given twice. */
 static void put_file(const char *name, const char *root, const char *frame, int first, int n)
 {
     char *text = malloc(65536);
@@ -63,7 +63,7 @@ static const adcgs_scene_view *train(int i)
 
 /* ---- Sizes ---- */
 
-/** Without w and h each image has its own size; angles of view, and middles, are those of each. */
+/** Without w and h each image has its own size. Angles of view and principal points are those of each image. */
 static void test_own_sizes(void **state)
 {
     put_images("images", 9, RIG_WIDTH, RIG_HEIGHT);
@@ -75,20 +75,20 @@ static void test_own_sizes(void **state)
     put_file("transforms.json", "\"camera_angle_x\":1,", IN_IMAGES, 0, 9);
     open_good(0);
     assert_true(fabs(train(0)->camera.fx - 2.0 * train(1)->camera.fx) < 1e-9 && train(1)->camera.cx == 6.0);
-    put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES, 0, 9); /* one focal length: cut off, or reduced? */
+    put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES, 0, 9); /* one focal length: ambiguous between a crop and a reduction */
     open_good(1);
     expect_remark("24x16 and 12x16", "fl_x is one for all");
     assert_true(train(1)->camera.fx == 20.0 && train(1)->camera.cx == 6.0);
 }
 
-/** Numbers of the full size with reduced images are scaled; another shape is refused, and both are named. */
+/** Numbers of the full size with reduced images are scaled. Another aspect is refused, with both named. */
 static void test_reduced(void **state)
 {
     put_images("images_4", 9, RIG_WIDTH, RIG_HEIGHT);
     put_file("transforms.json", INTRINSICS, "\"file_path\":\"images_4/%d.ppm\"", 0, 9);
     open_good(0);
     assert_true(train(0)->camera.width == 24 && train(0)->camera.fx == 20.0 && train(0)->camera.cy == 8.0);
-    put_file("transforms.json", INTRINSICS, IN_IMAGES, 0, 9); /* only reduced images are there */
+    put_file("transforms.json", INTRINSICS, IN_IMAGES, 0, 9); /* only reduced images exist */
     open_good(0);
     assert_true(strstr(train(0)->path, "images_4/1.ppm") && train(0)->camera.fx == 20.0);
     put_file("transforms.json", "\"fl_x\":80,\"w\":97,\"h\":64,", IN_IMAGES, 0, 9); /* 24.25: rounded */
@@ -145,7 +145,7 @@ static void test_times(void **state)
     assert_true(scene->views[ADCGS_SPLIT_TEST][0].time == 0.0 && fabs(train(7)->time - scene->duration) < 1e-12);
 }
 
-/** Frames that look as if they were of a film, without time. */
+/** Frames that look like a video's, without time. */
 static void test_no_times(void **state)
 {
     put_images("images", 9, RIG_WIDTH, RIG_HEIGHT);
@@ -158,7 +158,7 @@ static void test_no_times(void **state)
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"t\":\"%d\"", 0, 9);
     open_good(1);
     expect_remark("frames have t, which is not supported", "");
-    put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"timestamp\":7", 0, 9); /* all alike: no clock */
+    put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"timestamp\":7", 0, 9); /* all equal: no clock */
     open_good(0);
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"timestamp\":%d,\"time\":0", 0, 9);
     open_good(0);
@@ -190,13 +190,13 @@ static void test_names(void **state)
     for (uint32_t i = 0; i < scene->n_views[ADCGS_SPLIT_TRAIN]; i++)
         for (uint32_t k = 0; k < i; k++)
             assert_string_not_equal(train((int)i)->camera.name, train((int)k)->camera.name);
-    put_images("images", 9, RIG_WIDTH, RIG_HEIGHT); /* names that differ stay as they are */
+    put_images("images", 9, RIG_WIDTH, RIG_HEIGHT); /* names that differ stay unchanged */
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES, 0, 9);
     open_good(0);
     assert_string_equal(train(0)->camera.name, "1");
 }
 
-/** A frame for training and for testing is refused; other doubts are remarked. */
+/** A frame for both training and testing is refused; other inconsistencies cause a remark. */
 static void test_lists(void **state)
 {
 #define TRAIN "\"train_filenames\":[\"images/1.ppm\",\"./images/2.ppm\",\"images\\\\3.ppm\"]"
@@ -252,7 +252,7 @@ static void test_paths(void **state)
     open_bad("frames[0].file_path: no such image: images/x0.ppm", "");
 }
 
-/** Points that are not there are done without; a field of the file is named without a frame. */
+/** Missing points are skipped with a remark. An error in a field of the whole file is reported without a frame. */
 static void test_root(void **state)
 {
     put_images("images", 9, RIG_WIDTH, RIG_HEIGHT);

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Trials judge on training views that they hold back, drop what loses, and keep the rest. */
+/** \file Trials judge on training views that they hold back, drop the mechanisms that lose, and keep the others. */
 #include "tiny_scene.h"
 
 #include "train/trial.h"
 #include "train/trial_scene.h"
 
-/* ---- Views that are held back ---- */
+/* ---- Held-back views ---- */
 
 enum { MANY = 1200 };
 
 static adcgs_scene_view many[MANY];
 
-/** A scene of n views by so many cameras in turns, each turn later by a second. */
+/** A scene of n views by several cameras in turn; each turn is a second later. */
 static adcgs_scene scene_of(uint32_t n, uint32_t cameras)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -23,7 +23,7 @@ static adcgs_scene scene_of(uint32_t n, uint32_t cameras)
                           .n_times = (n + cameras - 1) / cameras };
 }
 
-/** Each view is trained on, or judges, or neither where too many would judge; none does both. */
+/** Each view is trained on, or judges, or neither if too many would judge; none does both. */
 static void check_split(const adcgs_scene *s, uint32_t n, uint32_t trained, uint32_t judges)
 {
     assert_int_equal(s->n_views[ADCGS_SPLIT_TRAIN], trained);
@@ -40,18 +40,18 @@ static void check_split(const adcgs_scene *s, uint32_t n, uint32_t trained, uint
 static void views_are_held_back(void **state)
 {
     adcgs_trial_scene t = { .scene = { .n_times = 0 } };
-    adcgs_scene s = scene_of(40, 40); /* one image a camera: one in eight */
+    adcgs_scene s = scene_of(40, 40); /* one image per camera: one in eight */
     assert_int_equal(adcgs_trial_scene_make(&t, &s, &error), ADCGS_OK);
     check_split(&t.scene, 40, 35, 5);
     adcgs_trial_scene_clear(&t);
-    s = scene_of(80, 8); /* whole cameras: one of eight, of which the others show nothing */
+    s = scene_of(80, 8); /* whole cameras: one of eight, with all of its views */
     assert_int_equal(adcgs_trial_scene_make(&t, &s, &error), ADCGS_OK);
     check_split(&t.scene, 80, 70, 10);
     const adcgs_scene_view *const held = t.scene.views[ADCGS_SPLIT_VAL];
     for (uint32_t i = 1; i < 10; i++)
         assert_true(held[i].camera.cam_to_world[3] == held[0].camera.cam_to_world[3]);
     adcgs_trial_scene_clear(&t);
-    s = scene_of(80, 1); /* a film of one camera that stays: single images */
+    s = scene_of(80, 1); /* a video of one static camera: single images */
     assert_int_equal(adcgs_trial_scene_make(&t, &s, &error), ADCGS_OK);
     check_split(&t.scene, 80, 70, 10);
     assert_int_equal(t.scene.n_times, 70);
@@ -62,7 +62,7 @@ static void views_are_held_back(void **state)
     adcgs_trial_scene_clear(&t);
 }
 
-/** A long scene gives a stretch about its middle, whose time begins at 0; a large static one is thinned. */
+/** A long scene gives an interval about its middle, whose time begins at 0; a large static one is thinned. */
 static void long_scenes_give_a_stretch(void **state)
 {
     adcgs_trial_scene t = { .scene = { .n_times = 0 } };
@@ -104,7 +104,7 @@ static const adcgs_trial *find(const adcgs_trials *t, const char *name)
     return NULL;
 }
 
-/** A price of size that no scene can pay is found out and dropped; no other mechanism is. So by any number of threads. */
+/** A scale regulariser that is far too strong is detected and dropped, and no other mechanism is; with any number of threads. */
 static void losing_mechanisms_are_dropped(void **state)
 {
     adcgs_train_config config = small_config();
@@ -163,7 +163,7 @@ static void trials_can_be_stopped(void **state)
     assert_int_equal(calls, 3);
 }
 
-/** Short runs, runs by time and runs that say so have none, and nothing to tell. */
+/** Short runs, runs with a time limit and runs that disable trials have none, and print nothing about them. */
 static void short_runs_have_no_trials(void **state)
 {
     adcgs_train_config config = small_config();
@@ -186,7 +186,7 @@ static void short_runs_have_no_trials(void **state)
 
 /* ---- Resumed runs ---- */
 
-/** A resumed run takes over the mechanisms that trials turned off, nothing else, and carries their figures. */
+/** A resumed run adopts the mechanisms that trials turned off, nothing else, and keeps their figures. */
 static void resumed_runs_adopt_verdicts(void **state)
 {
     static const char said[] = "views=3 iterations=100 gains=20.10/20.00 scale_price=20.00/21.00 dropped=squares,scale_price";

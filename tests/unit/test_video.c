@@ -21,7 +21,7 @@
 #define TOP 96
 static float pixels[TOP * TOP * 3];
 
-/** A smooth picture that moves; its mean green tells the frame: 0.2 + frame / 100. */
+/** A smooth moving image whose mean green encodes the frame: 0.2 + frame / 100. */
 static adcgs_frame paint(int width, int height, int number)
 {
     for (int y = 0; y < height; y++)
@@ -58,14 +58,14 @@ static double psnr(const adcgs_image *image, int width, int height, int number)
     return -10 * log10(sum / (3.0 * width * height) + 1e-12);
 }
 
-/* Every container: as many frames as went in, at their rate, looking as they did; odd sizes are kept or made even. */
+/* Every container keeps the number of frames, their rate and their content; odd sizes are kept or made even. */
 static void test_round_trip(void **state)
 {
     static const struct {
         const char *name;
         int width, height, even;
         double rate;
-        adcgs_fps exact; /* where the container keeps it */
+        adcgs_fps exact; /* if the container keeps it */
     } rows[] = {{"a.mp4", 64, 48, 1, 30, {30, 1}},   {"b.mov", 64, 48, 1, 30000 / 1001.0, {30000, 1001}},
                 {"c.mkv", 64, 48, 1, 24, {24, 1}},   {"d.avi", 64, 48, 1, 12.5, {25, 2}},
                 {"e.webm", 64, 48, 0, 25, {25, 1}},  {"f.mp4", 65, 47, 1, 30, {30, 1}},
@@ -119,7 +119,7 @@ static void test_same_bytes(void **state)
     free(b);
 }
 
-/* A key frame every two seconds: frames by themselves, from behind and across, are those of one pass. */
+/* A key frame every two seconds: frames read singly, backwards and in mixed order equal those of one pass. */
 static void test_any_order(void **state)
 {
     enum { N = 70, W = 48, H = 32 };
@@ -168,7 +168,7 @@ static void test_no_video(void **state)
     const int m = snprintf(list, sizeof list, "#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\n%s\n#EXT-X-ENDLIST\n",
                            in("good.mp4"));
     bad_file("list.m3u8", list, (size_t)m);
-    /* Sizes that are declared and not there. */
+    /* Declared sizes without data. */
     const char huge[] = "YUV4MPEG2 W30000 H30000 F30:1 Ip A1:1 C420\nFRAME\nabc";
     bad_file("huge.y4m", huge, sizeof huge - 1);
     const char wide[] = "YUV4MPEG2 W2000000000 H2 F30:1 Ip A1:1 C420\nFRAME\nabc";
@@ -177,7 +177,7 @@ static void test_no_video(void **state)
     bad_file("cut.y4m", cut, sizeof cut - 1);
 }
 
-/** Read all frames of what is left of a clip. \return how many are refused; the others look as they did. */
+/** Reads all frames of a damaged clip. \return number of frames refused; the others look as before. */
 static int refused(const char *name, int frames)
 {
     adcgs_video *video;
@@ -197,14 +197,14 @@ static int refused(const char *name, int frames)
             expect_error(got, ADCGS_ERR_DATA, name, expected);
             bad++;
         } else if (psnr(&image, 64, 48, f) < 35)
-            fail_msg("%s: frame %d is damaged, and nobody says so", name, f);
+            fail_msg("%s: frame %d is damaged, and no error is reported", name, f);
         adcgs_image_free(&image);
     }
     adcgs_video_close(&video);
     return bad;
 }
 
-/* Cut anywhere: frames that are there come out right, those that are not are named. */
+/* Cut anywhere: existing frames are right, and the errors name the missing ones. */
 static void test_truncated(void **state)
 {
     static const char *const names[] = {"whole.mp4", "whole.mkv", "whole.avi", "whole.webm"};
@@ -224,7 +224,7 @@ static void test_truncated(void **state)
     }
 }
 
-/* An index at the beginning, as for streaming, lists frames that a cut takes away: they are counted, and refused by number. */
+/* An index at the start, as for streaming, lists frames that a cut removes. They are counted, and refused by number. */
 static void test_listed(void **state)
 {
     size_t bytes;
@@ -269,7 +269,7 @@ static void test_listed(void **state)
     free(data);
 }
 
-/* Bytes changed in the middle: nothing but good frames and messages comes of it. */
+/* Bytes changed in the middle give only good frames and error messages. */
 static void test_damaged(void **state)
 {
     size_t bytes;
@@ -299,7 +299,7 @@ static void test_damaged(void **state)
     free(data);
 }
 
-/* ---- Writing that fails ---- */
+/* ---- Failing writes ---- */
 
 static void test_write_failures(void **state)
 {
@@ -336,7 +336,7 @@ enum { VIDEOS = ADCGS_CLIPS_OPEN + 5, FRAMES = 8 };
 static char paths[VIDEOS][300];
 static adcgs_scene_view views[VIDEOS * FRAMES];
 
-/** Copies of one clip under many names, and the views of all frames, all videos of a time together. */
+/** Copies of one clip under many names, and the views of all frames, ordered by time and then by video. */
 static adcgs_clips *make_views(void)
 {
     size_t bytes;

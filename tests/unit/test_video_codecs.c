@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Videos of other makers: codecs, depths, colours, shapes, places to begin. */
+/** \file Videos from other encoders: codecs, bit depths, colours, shapes, start positions. */
 #include "video_clips.h"
 
 #include "io/video.h"
@@ -10,7 +10,7 @@
             fail_msg("%s: \"%s\"", #call, error.text);        \
     } while (0)
 
-/* What LeakSanitizer is to overlook: libx265 3.5 loses a kilobyte for each encoder. */
+/* Suppression for LeakSanitizer: libx265 3.5 leaks a kilobyte per encoder. */
 __attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void)
 {
@@ -27,7 +27,7 @@ static double painted_sample(const void *user, int plane, int x, int y)
     return sample_at(p->depth, plane, x, y, p->frame);
 }
 
-/** The largest difference of an image from what the samples say. */
+/** The largest difference between an image and the samples' true values. */
 static double worst(const adcgs_image *image, const geometry *g, sample_fn sample, const void *user)
 {
     double most = 0;
@@ -41,7 +41,7 @@ static double worst(const adcgs_image *image, const geometry *g, sample_fn sampl
     return most;
 }
 
-/* Without loss, pixels are what the formulae say, for each matrix, range, depth and kind of chroma. */
+/* Without loss, pixels equal the formulae for each matrix, range, depth and kind of chroma. */
 static void test_colours(void **state)
 {
     static const struct {
@@ -90,7 +90,7 @@ static void test_colours(void **state)
     }
 }
 
-/* RGB and grey come through as they are. */
+/* RGB and grey pass unchanged. */
 static void test_rgb(void **state)
 {
     static const recipe clips[] = {
@@ -113,7 +113,7 @@ static void test_rgb(void **state)
     }
 }
 
-/** Frames in any order are those of reading from the beginning, bit for bit. */
+/** Frames read in any order equal those read from the start, bit for bit. */
 static void any_order(const char *name, int frames)
 {
     adcgs_video *video;
@@ -170,7 +170,7 @@ static void test_codecs(void **state)
     }
 }
 
-/* A quarter turn clockwise: what was at the left is at the top. Pixels twice as wide as high become square. */
+/* A quarter turn clockwise moves the left side to the top. Pixels twice as wide as high become square. */
 static void test_shape(void **state)
 {
     const recipe plain = {"plain.mov", "mpeg4", "b=9M", AV_PIX_FMT_YUV420P, 60, 38, 3, 0, 0, {0, 1}, 0};
@@ -208,7 +208,7 @@ static void test_shape(void **state)
     adcgs_image_free(&c);
 }
 
-/* ---- A clip made elsewhere, against its samples as FFmpeg decodes them from beginning to end ---- */
+/* ---- A clip of another encoder, against its samples as FFmpeg decodes them from start to end ---- */
 
 static double frame_sample(const void *user, int plane, int x, int y)
 {
@@ -216,7 +216,7 @@ static double frame_sample(const void *user, int plane, int x, int y)
     return f->data[plane][(ptrdiff_t)y * f->linesize[plane] + x];
 }
 
-/** The nth frame that comes out of the decoder. */
+/** The nth frame that the decoder returns. */
 static AVFrame *decode_plainly(const char *path, int nth)
 {
     AVFormatContext *f = NULL;

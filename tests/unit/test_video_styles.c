@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Videos in the user's codec, at the user's rate, with alpha: what was written is decoded by FFmpeg itself. */
+/** \file Videos in the user's codec, at the user's rate, with alpha. FFmpeg itself decodes the written files. */
 #include "outside_files.h"
 
 #include "io/video.h"
@@ -18,7 +18,7 @@
 enum { W = 64, H = 48, N = 6 };
 static float pixels[W * H * 3], coverage[W * H];
 
-/* What LeakSanitizer is to overlook: libx265 3.5 loses a kilobyte for each encoder. */
+/* Suppression for LeakSanitizer: libx265 3.5 leaks a kilobyte per encoder. */
 __attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void)
 {
@@ -32,7 +32,7 @@ static float straight(int x, int y, int c, int number)
     return 0.5f + 0.4f * (c ? cosf(0.05f * (float)y) : sinf(0.07f * (float)x + 0.2f * (float)number));
 }
 
-/** Smooth; with alpha, transparent on the left and opaque on the right, and colours times that. */
+/** A smooth image; with alpha, transparent on the left, opaque on the right, and premultiplied. */
 static adcgs_frame paint(int number, int has_alpha)
 {
     for (int y = 0; y < H; y++)
@@ -65,7 +65,7 @@ static long size_of(const char *name)
     return size;
 }
 
-/** The first frame, by the decoder of that name, or the codec's own. */
+/** The first frame, by the named decoder, or the codec's own. */
 static AVFrame *decode(const char *name, const char *decoder, enum AVCodecID *id)
 {
     AVFormatContext *f = NULL;
@@ -101,7 +101,7 @@ static double sample(const AVFrame *frame, int c, int x, int y)
     return value / (double)((1 << d->comp[c].depth) - 1);
 }
 
-/* Codecs without loss give the frames rounded to 8 bits, through our reader. */
+/* Lossless codecs give the frames rounded to 8 bits, through our reader. */
 static void test_lossless(void **state)
 {
     static const struct { const char *name, *codec; } rows[] = {{"a.mkv", "ffv1"}, {"a.mov", "qtrle"}, {"b.mov", "png"}};
@@ -123,7 +123,7 @@ static void test_lossless(void **state)
     }
 }
 
-/* Alpha is there, of full range, and colours are straight, as far as the codec keeps them. */
+/* Alpha is present, with full range, and colours are straight, within the codec's precision. */
 static void test_alpha(void **state)
 {
     static const struct {
@@ -159,7 +159,7 @@ static void test_alpha(void **state)
     }
 }
 
-/* The codec that was asked for, and as many bytes as that takes. */
+/* The requested codec, and the number of bytes that it takes. */
 static void test_codecs(void **state)
 {
     static const struct {
@@ -193,7 +193,7 @@ static void test_rates(void **state)
     expect_good(write_clip("many.mkv", &(adcgs_video_style){.codec = "vp9", .bit_rate = 4000000}));
     expect_good(write_clip("few.mkv", &(adcgs_video_style){.codec = "vp9", .bit_rate = 10000}));
     assert_true(size_of("few.mkv") < size_of("many.mkv"));
-    /* What goes on to the encoder, and the format of pixels. */
+    /* Options are passed on to the encoder, and so is the pixel format. */
     expect_good(write_clip("deep.mkv", &(adcgs_video_style){.codec = "ffv1", .options = "coder=1:pix_fmt=yuv444p16le"}));
     enum AVCodecID id;
     AVFrame *frame = decode("deep.mkv", NULL, &id);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The tiny scene in a folder of its own, three threads, and runs that stop where they are told: for tests that train. */
+/** \file For tests that train: the tiny scene in a separate folder, three threads, and runs that stop at a given iteration. */
 #ifndef ADCGS_TESTS_TINY_SCENE_H
 #define ADCGS_TESTS_TINY_SCENE_H
 
@@ -44,10 +44,10 @@ static inline adcgs_train_config small_config(void)
     c.max_anchors = 150;
     c.detail_anchors = 0;
     c.densify_every = 20;
-    c.params.spans = 0; /* unless a test is about them */
+    c.params.spans = 0; /* tests of lifetimes enable them */
     c.stereo = 0;
     c.densify_threshold = 1e-6f;
-    c.still_below = 0; /* motion takes longer to show than these runs last */
+    c.still_below = 0; /* motion becomes visible later than these runs end */
     c.params.k = 4;
     c.params.n_fv = 12;
     c.params.n_fg = 8; /* so that there are layers */
@@ -55,13 +55,13 @@ static inline adcgs_train_config small_config(void)
     return c;
 }
 
-/** An observer: stop at the iteration that user points to. */
+/** An observer that stops at the iteration that user points to. */
 static inline int stop_at(void *user, const adcgs_train_report *r)
 {
     return r->iteration >= *(const uint32_t *)user;
 }
 
-/** A run over the scene, whose values are rounded as streams have them. */
+/** A run over the scene, whose values are rounded as in streams. */
 static inline adcgs_trainer *make_trainer(const adcgs_train_config *config, adcgs_pool *threads)
 {
     adcgs_trainer *t;
@@ -71,7 +71,7 @@ static inline adcgs_trainer *make_trainer(const adcgs_train_config *config, adcg
     return t;
 }
 
-/** The state of a run less its time. */
+/** The state of a run without its time. */
 static inline void store(adcgs_trainer *t, adcgs_buffer *out)
 {
     t->elapsed = (adcgs_time){ 0, 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Clips of known samples, made by FFmpeg's encoders for the tests of reading, and what their pixels should be. */
+/** \file Clips of known samples, made by FFmpeg's encoders for the tests of reading, and their true pixels. */
 #ifndef ADCGS_TESTS_VIDEO_CLIPS_H
 #define ADCGS_TESTS_VIDEO_CLIPS_H
 
@@ -11,13 +11,13 @@
 #include <math.h>
 
 typedef struct recipe {
-    const char *name, *encoder, *options; /* options as FFmpeg writes them: a=b:c=d */
+    const char *name, *encoder, *options; /* options in FFmpeg's syntax: a=b:c=d */
     enum AVPixelFormat format;
     int width, height, frames;
-    enum AVColorSpace space; /* 0: RGB where samples are, else not said */
+    enum AVColorSpace space; /* 0: RGB if samples are RGB, else unspecified */
     enum AVColorRange range;
     AVRational aspect;
-    int turn; /* 90: the picture is to be turned by a quarter, clockwise */
+    int turn; /* 90: the image has to be turned by a quarter, clockwise */
 } recipe;
 
 /** A sample: smooth, different in each frame, within the limited range. */
@@ -96,7 +96,7 @@ static inline AVCodecContext *open_encoder(const recipe *r, const AVCodec *codec
     return c;
 }
 
-/** \return 0 if this build of FFmpeg cannot. */
+/** \return 0 if this build of FFmpeg cannot make the clip. */
 static inline int make_clip(const recipe *r)
 {
     const AVCodec *codec = avcodec_find_encoder_by_name(r->encoder);
@@ -140,7 +140,7 @@ static inline int make_clip(const recipe *r)
     return 1;
 }
 
-/* ---- What pixels should be, in double and one by one: the formulae of ITU-T H.273 ---- */
+/* ---- The true pixels, in double and one by one: the formulae of ITU-T H.273 ---- */
 
 typedef double (*sample_fn)(const void *user, int plane, int x, int y);
 
