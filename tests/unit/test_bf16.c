@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /**
  * \file
- * Layers in bf16 and their weight gradients against plain sums in double of factors rounded to bf16, for sizes that fill no
- * vector and for large ones. Nothing is written outside the outputs. Skipped where the CPU has no AVX512-BF16.
+ * Layers in bf16 and their weight gradients against plain sums in double of factors rounded to bf16. Sizes fill no vector, or are
+ * large. Nothing is written outside the outputs. Skipped where the CPU has no AVX512-BF16.
  */
 #include "base/cpu.h"
 #include "grad/dsp.h"

@@ -621,8 +621,8 @@ static void what_moves_as_it_likes_has_no_fault(void **state)
 }
 
 /**
- * Masked pixels, which are NaN in images, have no effect. A bright sign that covers most of the image is no step of light and
- * hides none, and two images that differ in the sign alone are duplicates.
+ * Masked pixels, which are NaN in images, have no effect. A bright sign over most of the image is no step of light and hides
+ * none. Two images that differ in the sign alone are duplicates.
  */
 static void what_is_masked_does_not_count(void **state)
 {

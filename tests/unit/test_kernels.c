@@ -2,10 +2,10 @@
 /**
  * \file
  * Every kernel at every CPU level of this machine, on ordinary, wide and extreme numbers (zeros of both signs, subnormals, the
- * largest, infinities, NaN). Nothing is written outside the outputs, and
- * - kernels that determine the decoded result, and those that promise the same, give the bits of the portable ones, with any
- *   NaN equal to any other;
- * - other kernels of training give the results of the portable ones, except for the order of sums and fused products.
+ * largest, infinities, NaN). Nothing is written outside the outputs.
+ * - Kernels that determine the decoded result, and those that promise the same, give the bits of the portable ones. A NaN equals
+ *   any other NaN.
+ * - Other kernels of training give the results of the portable ones, except for the order of sums and fused products.
  * The integer networks' kernels are in test_net.c: their inputs are checked when a network is loaded.
  */
 #include "config.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The training loss against a direct evaluation in double with a two-dimensional window, its gradient against central differences
- * of that, and the same bits at every CPU level and thread count.
+ * The training loss against a direct evaluation in double with a two-dimensional window. Its gradient against central differences
+ * of that evaluation. Both have the same bits at every CPU level and thread count.
  */
 #include "grad/loss.h"
 

@@ -38,8 +38,8 @@ static void draw_square(void)
 }
 
 /**
- * The majority of the square of 5x5 pixels about a pixel lies on that path for x 10 to 19 in its outer rows and for x 9 to 20 in
- * its inner rows. The region reaches three pixels farther.
+ * Pixels for which most of the 5x5 square about them lies on that path: x 10 to 19 in its outer rows, x 9 to 20 in its inner
+ * rows. The region reaches three pixels farther.
  */
 static int is_near_square(int pixel)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Tiers. A decoder that renders the first tiers shows the same as a stream that ends behind them. Every prefix of a stream is the
- * model without the missing anchors, read in order or pushed, and so is a stream that lost a chunk.
+ * model without the missing anchors, read in order or pushed. So is a stream that lost a chunk.
  */
 #include "random_model.h"
 
