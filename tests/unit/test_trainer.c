@@ -169,7 +169,7 @@ static void checkpoints_are_checked(void **state)
     config.densify_until += 0.01f;
     other = make_trainer(&config, NULL);
     assert_int_equal(adcgs_trainer_restore(other, b.data, b.size - 1, &error), ADCGS_ERR_DATA);
-    assert_non_null(strstr(error.text, "other options: densify_until is 0.5 there and 0.51 here"));
+    assert_non_null(strstr(error.text, "other options: densify_until is 0.5 in the file and 0.51 here"));
     adcgs_trainer_free(&other);
     adcgs_trainer_free(&t);
     adcgs_buffer_clear(&b);
