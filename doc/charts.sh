@@ -1,14 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Speed against accuracy against bytes: make -C build charts. adcgs-sweep codes each scene that is at hand with several lambdas
-# and several numbers of iterations, one thread, seed 1. Each scene's page is index.html in its folder; the folder "kept" gathers
-# charts of all and their figures as CSV. What is there already is kept, so that it can go on. Folders are seen from the build
-# folder. Seconds are of processors, of runs of one thread.
-#   CHARTS      folder of all of it (default charts)
-#   SCENES      of doc/scenes.sh, by their short names (default "demo cross80 room hand")
+# Charts of speed, accuracy and bytes: make -C build charts. adcgs-sweep encodes each available scene with several lambdas and
+# several numbers of iterations; one thread, seed 1. The page of a scene is index.html in its folder. The folder "kept" collects
+# all charts, and their figures as CSV. Existing results are kept, so that the script can be continued. Folders are relative to
+# the build folder. Seconds are processor seconds of runs with one thread.
+#   CHARTS      folder for all results (default charts)
+#   SCENES      short names of doc/scenes.sh (default "demo cross80 room hand")
 #   LAMBDAS     default 0.1,0.4
 #   ITERATIONS  default 400,1200,3600
-#   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
+#   ADCGS_DATA  folder of data sets (default ../shared/data next to the sources)
 set -eu
 source=$(cd "${srcdir:-.}" && pwd)
 out=${CHARTS:-charts}

@@ -1,20 +1,20 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# What each choice of the encoder saves: make -C build choices. Scenes that are at hand are coded by default, then once without
-# each of the choices that it takes by the scene, then with a model of the preset's size and of the paper's; one thread, as
-# measured on the frames decoded from the file. Writes choices.md; what is there already is kept, so that it can go on.
+# Savings by each choice of the encoder: make -C build choices. Each available scene is encoded by default, then once without each
+# of the scene-dependent choices, then with a model of the preset's size and with one of the paper's size; one thread. Figures are
+# measured on the frames decoded from the file. Writes choices.md. Existing results are kept, so that the script can be continued.
 #   CHOICES     folder of streams (default choices)
-#   SCENES      of doc/scenes.sh, by their short names (default "demo zju")
+#   SCENES      short names of doc/scenes.sh (default "demo zju")
 #   ITERATIONS  of training (default 3000)
 #   SEEDS       default 1
-#   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
+#   ADCGS_DATA  folder of data sets (default ../shared/data next to the sources)
 set -eu
 source=$(cd "${srcdir:-.}" && pwd)
 out=${CHOICES:-choices}
 mkdir -p "$out/scenes"
 . "$source/doc/scenes.sh"
 
-# choices: NAME OPTIONS of adcgs-enc, that turn one off.
+# choices: lines NAME OPTIONS; these options of adcgs-enc turn the choice off.
 choices()
 {
     cat <<EOF
@@ -34,7 +34,7 @@ papers-size --fixed --set max_anchors=20000,k=10,n_fg=16,time_width=64,omega_wid
 EOF
 }
 
-# choose SCENE NAME SEED CHOICE OPTIONS...: a row.
+# choose SCENE NAME SEED CHOICE OPTIONS...: a row of the table.
 choose()
 {
     scene=$1 name=$2-$4-$3 choice=$4 seed=$3

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# The table of README, section Figures: make -C build figures. Each scene that is at hand is coded with the settings below, one
-# thread, seed 1, and measured on the frames decoded from the file. Writes figures.md; what is there already is kept, so that
-# it can go on.
+# The table of README, section Figures: make -C build figures. Each available scene is encoded with the settings below, one
+# thread, seed 1. Figures are measured on the frames decoded from the file. Writes figures.md. Existing results are kept, so that
+# the script can be continued.
 #   FIGURES     folder of streams (default figures)
 #   ITERATIONS  of training (default 3000: minutes; "3000 20000" makes rows for both)
-#   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
+#   ADCGS_DATA  folder of data sets (default ../shared/data next to the sources)
 set -eu
 source=$(cd "${srcdir:-.}" && pwd)
 data=${ADCGS_DATA:-$source/../shared/data}
@@ -31,11 +31,11 @@ row()
         "$([ -n "$moving" ] && printf '%.2f' "$moving" || echo -)" "$(value ssim "$out/$name.json")" "$seconds" >>"$out/figures.md"
 }
 
-# row_of N TITLE SCENE NAME WEIGHT: with N iterations, the lambda that the encoder chooses, and all anchors at once.
+# row_of N TITLE SCENE NAME WEIGHT: N iterations, the lambda that the encoder chooses, and all anchors in one tier.
 row_of() { row "$2" "$3" "$4-$1" -n "$1" --no-progression; }
 
 make_scenes "$out"
-printf '| Scene | `adcgs-enc` | File, bytes | PSNR, dB | of what moves | SSIM | CPU, s |\n|---|---|---|---|---|---|---|\n' >"$out/figures.md"
+printf '| Scene | `adcgs-enc` | File, bytes | PSNR, dB | of moving regions | SSIM | CPU, s |\n|---|---|---|---|---|---|---|\n' >"$out/figures.md"
 for n in ${ITERATIONS:-3000}; do
     each_scene "$out" "$data" row_of "$n"
 done

@@ -5,9 +5,9 @@ set datafile separator ','
 set grid
 set key noenhanced bottom right
 set output folder.'/ranks.svg'
-set title 'A scene in segments, and views of one segment, learnt by many ranks'
+set title 'A scene in segments, and views of one segment, trained by many ranks'
 set xlabel 'ranks'
-set ylabel 'times as fast as one'
+set ylabel 'speed-up over one rank'
 set logscale xy 2
 set format y '%.3g'
 curves = system("awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' ".folder.'/ranks.csv')

@@ -1,24 +1,23 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# What ranks of mpirun are worth: make -C build ranks. A clip that the project makes is learnt in segments that are all keys, by
-# one, two and four ranks of a thread each, and what it takes is written to ranks.csv, in seconds, and those of all processors.
-# With PLAN its segments are shared out on paper, chains of a key and what follows it as ranks become free, by the seconds that
-# the plan says. Draws ranks.svg.
-# A scene of one segment (cross80), four views to an iteration, is learnt by ranks that share these, and what that takes goes to
-# views.csv: seconds, those of all processors, and of the first rank's alone, which is what it would take with a processor for
-# each. What many ranks would take, on paper, goes to views-paper.csv, in milliseconds; what four views to an iteration are worth,
-# to batch.csv.
-#   RANKS       folder of all of it (default ranks)
+# Speed-up by ranks of mpirun: make -C build ranks. A generated clip is trained in segments that are all keys, by one, two and
+# four ranks of one thread each. ranks.csv gets the seconds, and the processor seconds of all ranks together. For each PLAN the
+# script calculates the time with more ranks from the seconds in the plan: chains of a key and its dependent segments go to ranks
+# as these become free. Makes ranks.svg.
+# Ranks also train a scene of one segment (cross80) with four views an iteration, which they share. views.csv gets the seconds,
+# the processor seconds of all ranks, and those of the first rank alone. The last are the time with a processor for each rank.
+# views-paper.csv has the calculated time of many ranks, in milliseconds; batch.csv the benefit of four views an iteration.
+#   RANKS       folder for all results (default ranks)
 #   ITERATIONS  of a segment (default 400)
-#   VIEWS       iterations that share views, hundreds (default 200); 0: none
-#   BATCH       iterations of a view that others are compared with (default 1500); 0: none
-#   PLAN        of adcgs-enc --plan, or several; a curve each, called by its file's name
+#   VIEWS       iterations with shared views, a multiple of 100 (default 200); 0: none
+#   BATCH       iterations of one view each, the reference of the comparison (default 1500); 0: none
+#   PLAN        one or several plans of adcgs-enc --plan; each gives a curve with the name of its file
 set -eu
 source=$(cd "${srcdir:-.}" && pwd)
 out=${RANKS:-ranks} views=${VIEWS:-200} batch=${BATCH:-1500}
 mkdir -p "$out"
 
-# run N: seconds, and those of processors.
+# run N: seconds, and processor seconds.
 run()
 {
     begin=$(date +%s.%N)
@@ -29,7 +28,7 @@ run()
     awk "BEGIN { printf \"%.1f,%s\", $end - $begin, $cpu }"
 }
 
-# shared NAME: a plan's list, by 1, 2, 4, ... ranks.
+# shared NAME: distributes the list of a plan to 1, 2, 4, ... ranks.
 shared()
 {
     awk -v name="$1" '
@@ -48,8 +47,8 @@ shared()
     }'
 }
 
-# learn NAME RANKS BATCH: seconds, those of all processors, of the first rank's, and of that for a hundred iterations, before there
-# are stages, which each rank does by itself; and anchors.
+# learn NAME RANKS BATCH: seconds; processor seconds of all ranks, of the first rank, and of the first rank for a hundred
+# iterations, before the stages that each rank does by itself; and anchors.
 learn()
 {
     begin=$(date +%s.%N)
@@ -63,8 +62,9 @@ learn()
             END { printf "%.1f,%.1f,%.1f,%.2f,%d\n", wall, all, $2, hundred, $1 }'
 }
 
-# on_paper: an iteration of 64 views by ranks that are joined by 10 Gbit/s and wait thrice for 0.1 ms, of what views.csv has.
-# There are 117 numbers of an anchor to sum (98 gradients, 19 statistics) and some 20,000 of networks; who shares sends them twice.
+# on_paper: time of an iteration of 64 views, calculated from views.csv. The ranks are joined by 10 Gbit/s and wait three times
+# for 0.1 ms. There are 117 numbers to sum for an anchor (98 gradients, 19 statistics), and about 20,000 for the networks. Each
+# rank that shares sends them twice.
 on_paper()
 {
     awk -F, '
@@ -79,7 +79,7 @@ on_paper()
     }' "$out/views.csv"
 }
 
-# worth BATCH ITERATIONS SEED: bytes, dB, seconds of processors.
+# worth BATCH ITERATIONS SEED: bytes, dB, processor seconds.
 worth()
 {
     ./adcgs-enc "$out/cross80" -o "$out/worth.adcgs" --set "batch=$1" -n "$2" --seed "$3" --no-progression --threads 1 -q --json |

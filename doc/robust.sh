@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Robustness of the default: make -C build robust. Each scene of doc/robust.list is coded by default, then once with each mechanism
-# off; one thread a run. All figures are those of decoded files on test views (adcgs-eval). Writes robust.md: PSNR, bytes and CPU
-# seconds of every run, and the gain in dB by turning each mechanism off, in bold where it is more than MARGIN. Leaves with 1 then,
-# or if a run fails. Results are kept, so that it resumes: one folder for each version of adcgs-enc and number of iterations.
+# Robustness of the default: make -C build robust. Each scene of doc/robust.list is encoded by default, then once without each
+# mechanism; one thread a run. All figures are those of decoded files on test views (adcgs-eval). Writes robust.md: PSNR, bytes
+# and CPU seconds of every run, and the gain in dB by turning each mechanism off, in bold where it is more than MARGIN. Exits with
+# 1 if any gain is bold, or if a run fails. Results are kept, so that it resumes: one folder for each version of adcgs-enc and
+# number of iterations.
 #   ROBUST      folder of these folders (default robust)
 #   VERSION     name of the version (default the checksum of adcgs-enc)
 #   SCENES      short names (default all that are present); MECHANISMS likewise
@@ -22,14 +23,14 @@ list=${ROBUST_LIST:-$source/doc/robust.list}
 data=${ADCGS_DATA:-$source/../shared/data}
 out=${ROBUST:-robust}/${VERSION:-$(cksum <./adcgs-enc | cut -d ' ' -f 1)}-${ITERATIONS:-1500}
 
-# listed KIND: lines of the list without that word.
+# listed KIND: the lines of the list that begin with KIND, without it.
 listed() { sed -n "s/^$1 \{1,\}//p" "$list"; }
-# own_options OPTIONS: those of adcgs-enc, behind " // "; nothing where there are none.
+# own_options OPTIONS: the options of adcgs-enc, after " // "; nothing if there are none.
 own_options() { case $1 in *"// "*) printf '%s\n' "${1#*// }" ;; esac; }
-# is_in NAME NAMES: everything is in no names.
+# is_in NAME NAMES: whether NAMES contains NAME, or is empty.
 is_in() { case " ${2:-$1} " in *" $1 "*) ;; *) return 1 ;; esac }
 
-# scenes: NAME FOLDER OPTIONS of those that are asked for and present.
+# scenes: lines NAME FOLDER OPTIONS of the selected scenes that are present.
 scenes()
 {
     listed made | while read -r name scene options; do
@@ -41,7 +42,7 @@ scenes()
     done
 }
 
-# mechanisms: NAME OPTIONS of those that are asked for, behind the default.
+# mechanisms: the default, then lines NAME OPTIONS of the selected mechanisms.
 mechanisms()
 {
     echo "default --set trial_share=$(awk "BEGIN { s = ${TRIALS:-400} / ${ITERATIONS:-1500}; print s < 1 ? s : 1 }")"
@@ -59,7 +60,8 @@ make_scene()
     ./adcgs-demo-scene --scene "$scene" "$@" -o "$out/scenes/$name" -q --threads 1 && : >"$out/scenes/$name.made"
 }
 
-# run SCENE MECHANISM SEED FOLDER OPTIONS...: unless it is there. An encoder without the switch of a mechanism is noted as such.
+# run SCENE MECHANISM SEED FOLDER OPTIONS...: does nothing if the result exists. Records if an encoder has no switch for a
+# mechanism.
 run()
 {
     stem=$out/runs/$1-$2-$3 seed=$3 scene=$4
@@ -84,7 +86,7 @@ if [ "${1:-}" = run ]; then
     exit 0
 fi
 
-# figures: SCENE MECHANISM SEED PSNR BYTES SECONDS of each run, with - where the encoder has no switch.
+# figures: SCENE MECHANISM SEED PSNR BYTES SECONDS of each run; three dashes if the encoder has no switch.
 figures()
 {
     scenes | while read -r scene rest; do
@@ -101,7 +103,7 @@ figures()
     done
 }
 
-# tables: of figures; the last line is the number of marked cells and of all of them.
+# tables: makes tables from figures; the last line is the number of marked cells and of all cells.
 tables()
 {
     awk -v margin="${MARGIN:-0.3}" '

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# What the scripts beside it share, to be read with `.` in the build folder: the scenes that they measure, and a report's figures.
+# Shared by the scripts of this folder, which read it with `.` in the build folder: the measured scenes, and figures of a report.
 
-# make_scenes FOLDER: those that the project makes itself go there, unless they are there.
+# make_scenes FOLDER: generate the built-in scenes there, except those that exist.
 make_scenes()
 {
     for made in demo cross80 turn1; do
@@ -9,8 +9,8 @@ make_scenes()
     done
 }
 
-# each_scene MADE DATA COMMAND...: COMMAND TITLE SCENE NAME WEIGHT for each scene, there or not. MADE is the folder of
-# make_scenes, DATA that of the data sets; WEIGHT is what lambdas that are given are multiplied by.
+# each_scene MADE DATA COMMAND...: COMMAND TITLE SCENE NAME WEIGHT for each scene, present or not. MADE is the folder of
+# make_scenes, DATA that of the data sets. Given lambdas are multiplied by WEIGHT.
 each_scene()
 {
     made=$1 data=$2
@@ -25,12 +25,12 @@ each_scene()
     "$@" '`zju313_15f`' "$data/zju313_15f" zju 0.3
 }
 
-# wanted TOOL SCENES SCENE NAME: whether a scene is one of those that are asked for by their short names, and is there.
+# wanted TOOL SCENES SCENE NAME: whether the list SCENES of short names contains NAME, and the scene is present.
 wanted()
 {
     case " $2 " in *" $4 "*) ;; *) return 1 ;; esac
     [ -e "$3" ] || { echo "$1: no $3, left out" >&2; return 1; }
 }
 
-# value NAME FILE: of a report as JSON, or of a whole evaluation, not of a view; nothing where it is null.
+# value NAME FILE: a value of a JSON report, or of a whole evaluation (not of a view); nothing if it is null.
 value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }

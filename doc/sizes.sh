@@ -1,17 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# The size that the encoder finds for a scene, beside a grid of sizes and beside the preset's, of which nothing is taken away:
-# make -C build sizes. adcgs-sweep codes each scene that is at hand, one thread; the first curve is the default's. Each
-# scene's page is index.html in its folder; the folder "kept" gathers charts and figures of all, and sizes.md, which tells how
-# far the default's objective lies above the least of the grid. What is there already is kept, so that it can go on.
-#   SIZES       folder of all of it (default sizes)
-#   SCENES      object, table, or of doc/scenes.sh, by their short names (default "object table cross80 zju")
+# The size that the encoder chooses for a scene, compared with a grid of sizes and with the preset's full size: make -C build
+# sizes. adcgs-sweep encodes each available scene with one thread; the first curve is the default's. The page of a scene is
+# index.html in its folder. The folder "kept" collects all charts and figures, and sizes.md, which gives the distance between the
+# default's objective and the minimum of the grid. Existing results are kept, so that the script can be continued.
+#   SIZES       folder for all results (default sizes)
+#   SCENES      object, table, or short names of doc/scenes.sh (default "object table cross80 zju")
 #   LAMBDAS     default 0.1,0.4
 #   GRID        the default's choice first (default "k=6,3,10 detail_anchors=50,25,100")
 #   ITERATIONS  of training (default 1500)
-#   SEEDS       of which the means are shown (default 1)
+#   SEEDS       figures are means over these seeds (default 1)
 #   JOBS        runs at a time (default 1)
-#   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
+#   ADCGS_DATA  folder of data sets (default ../shared/data next to the sources)
 set -eu
 source=$(cd "${srcdir:-.}" && pwd)
 out=${SIZES:-sizes}
@@ -29,7 +29,7 @@ sweep()
         --yardsticks none --resume "$@" >"$out/$folder.txt"
 }
 
-# table FILE TITLE: of each lambda, the default, the least objective of the grid, and the fixed size; a row each.
+# table FILE TITLE: rows for each lambda: the default, the lowest objective of the grid, and the fixed size.
 table()
 {
     awk -F, -v scene="$2" '

@@ -7,8 +7,8 @@ set grid
 set key bottom right
 
 set output folder.'/prefixes.svg'
-set title 'What the beginning of a stream shows'
-set xlabel 'percent of its bytes'
+set title 'Quality of the beginning of a stream'
+set xlabel 'percent of the bytes'
 set ylabel 'PSNR, dB'
 set xrange [0:100]
 scenes = system("awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' ".folder.'/prefixes.csv')

@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# What streaming costs and gives: make -C build streaming. Prefixes of streams whose anchors come in tiers against the PSNR of
-# their test views, for each scene that is at hand, and bytes of the built-in clip of ten seconds, cut into segments that are all
-# keys, or predicted, or not at all. One thread, seed 1; writes prefixes.csv and segments.csv, and a chart of each by gnuplot.
-# What is there already is kept, so that it can go on. Folders are seen from the build folder.
-#   STREAMING   folder of all of it (default streaming)
-#   ITERATIONS  of training, of each segment of the clip, and five times as many of the whole clip (default 3000)
-#   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
+# Cost and benefit of streaming: make -C build streaming. For each available scene, prefixes of a stream with anchors in tiers,
+# against the PSNR of the test views. For the built-in clip of ten seconds, bytes of segments that are all keys, of predicted
+# segments, and of the uncut clip. One thread, seed 1. Writes prefixes.csv and segments.csv, and a chart of each with gnuplot.
+# Existing results are kept, so that the script can be continued. Folders are relative to the build folder.
+#   STREAMING   folder for all results (default streaming)
+#   ITERATIONS  of training, for each segment of the clip; five times as many for the uncut clip (default 3000)
+#   ADCGS_DATA  folder of data sets (default ../shared/data next to the sources)
 set -eu
 source=$(cd "${srcdir:-.}" && pwd)
 out=${STREAMING:-streaming}
@@ -14,7 +14,7 @@ iterations=${ITERATIONS:-3000}
 mkdir -p "$out/scenes"
 . "$source/doc/scenes.sh"
 
-# code FILE OPTIONS...: a stream, unless it is there.
+# code FILE OPTIONS...: make a stream if it does not exist.
 code()
 {
     file=$1
@@ -22,7 +22,7 @@ code()
     [ -e "$file" ] || ./adcgs-enc "$@" -o "$file" --threads 1 --seed 1 >/dev/null
 }
 
-# mean FILE SCENE: PSNR of test views, and that of what moves, "-" where it is not known.
+# mean FILE SCENE: PSNR of test views, and of their dynamic regions ("-" if unknown).
 mean() { ./adcgs-eval "$1" "$2" --metrics dynamic-psnr -q | awk '/^mean/ { print $6 "," ($10 == "" ? "-" : $10) }'; }
 
 # prefixes TITLE SCENE NAME WEIGHT
@@ -42,10 +42,10 @@ prefixes()
     rm "$out/prefix.adcgs"
 }
 
-# measure FILE KIND COUNT: a row of what the clip takes.
+# measure FILE KIND COUNT: a row for the clip: its bytes and quality.
 measure() { echo "$2,$3,$(wc -c <"$1"),$(mean "$1" "$out/scenes/clip")" >>"$out/segments.csv"; }
 
-# segments SECONDS COUNT: the clip in so many of them.
+# segments SECONDS COUNT: the clip in COUNT segments.
 segments()
 {
     for kind in keys predicted; do

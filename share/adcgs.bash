@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# Completion of adcgs's command lines, for bash. What there is to complete is the program's own table of options, which
-# `program --completion` prints (src/cli/completion.h).
+# Completion of the command lines of adcgs, for bash. It uses each program's own table of options, which `program --completion`
+# prints (src/cli/completion.h).
 
-# _adcgs_words WORD...: offer those that begin with $_adcgs_stub, behind what of the word is there already.
+# _adcgs_words WORD...: offer the words that begin with $_adcgs_stub, with $_adcgs_kept, the finished part of the word, in front.
 _adcgs_words()
 {
     local word
@@ -20,7 +20,8 @@ _adcgs_files()
     done < <(compgen -f -- "$_adcgs_stub")
 }
 
-# _adcgs_value KIND VALUE WORDS: what an option takes. VALUE is what the help calls it: NAME=VALUE,... is a list of such.
+# _adcgs_value KIND VALUE WORDS: complete the value of an option. VALUE is its name in the help: NAME=VALUE,... is a list of
+# pairs.
 _adcgs_value()
 {
     local kind=$1 value=$2 words=$3 list
@@ -41,7 +42,7 @@ _adcgs_value()
 _adcgs()
 {
     COMPREPLY=()
-    # Words by blanks: bash cuts them at = and :, and wants what follows the last of these alone.
+    # Split words at blanks: bash also splits them at = and :, and expects only the part after the last of these characters.
     local line=${COMP_LINE:0:COMP_POINT} word previous _adcgs_kept= _adcgs_stub
     word=${line##*[[:blank:]]}
     previous=${line%"$word"}
@@ -67,7 +68,7 @@ _adcgs()
             fi
         fi
     done < <("${1/#\~/$HOME}" --completion 2>/dev/null)
-    # What bash does not replace goes from the front.
+    # Remove the front part, which bash does not replace.
     local current=${COMP_WORDS[COMP_CWORD]} i
     [[ $current == [=:] ]] && current=
     local behind=${word%"$current"}

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Speed: the machine's ceilings first, then kernels, stages, frames, iterations and playing beside them. See HACKING.md.
+ * Speed: first the machine's ceilings; then kernels, stages, frames, iterations and playing, relative to them. See HACKING.md.
  *
  *     tests/bench/adcgs-bench --output speed.csv
  */
@@ -60,7 +60,7 @@ static adcgs_status check_group(const bench *b, adcgs_error *error)
     for (size_t i = 0; i < ADCGS_COUNTOF(groups); i++)
         if (bench_wants(b, groups[i]))
             return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_USAGE, "--group %s: there is none; see --help", b->only);
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "--group %s: no such group; see --help", b->only);
 }
 
 int main(int argc, char **argv)
@@ -76,13 +76,13 @@ int main(int argc, char **argv)
         { "cpu", 'c', ADCGS_OPTION_CHOICE, &s.cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)",
           adcgs_cpu_names, NULL },
         { "threads", 't', ADCGS_OPTION_INT, &s.b.threads, 1, 256, "N", "threads at most (default: one per CPU)", NULL, NULL },
-        { "turns", 'r', ADCGS_OPTION_INT, &s.b.rounds, 3, 101, "N", "turns of each thing (default 15)", NULL, NULL },
+        { "turns", 'r', ADCGS_OPTION_INT, &s.b.rounds, 3, 101, "N", "turns of each item (default 15)", NULL, NULL },
         { "scenes", 's', ADCGS_OPTION_STRING, &s.scenes, 0, 0, "DIR",
-          "where the training's scene is made, or was (default bench-scenes)", NULL, NULL },
+          "folder of the training scene, generated if missing (default bench-scenes)", NULL, NULL },
         { "quick", 'q', ADCGS_OPTION_FLAG, &s.quick, 0, 0, NULL, "one size, one number of splats", NULL, NULL },
     };
     const adcgs_cli cli = { .program = "adcgs-bench", .operands = "", .summary = "Measures this build on this machine.",
-                            .details = "What is compared takes turns, so a busy machine spoils times, but hardly ratios.\n",
+                            .details = "Compared items take turns, so other load distorts times, but hardly ratios.\n",
                             .options = options, .n_options = ADCGS_COUNTOF(options) };
     adcgs_error error = { .status = ADCGS_OK };
     int first;

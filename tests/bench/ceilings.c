@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What the machine can do at most. */
+/** \file The limits of the machine. */
 #include "config.h"
 
 #include "ceilings.h"
@@ -25,13 +25,13 @@ const bench_loops *bench_loops_of(adcgs_cpu_level level)
 
 enum { FMA, INT16, READ };
 
-/** Bytes that each thread reads in a turn, about. */
+/** Approximate number of bytes that each thread reads in a turn. */
 #define READ_LEAST ((size_t)256 << 20)
 
 typedef struct job {
     const bench_loops *loops;
     int kind, times;
-    const float *from; /**< each thread's own part */
+    const float *from; /**< part of this thread */
     size_t n;
     double operations, sink[256];
 } job;
@@ -52,7 +52,7 @@ static void run_piece(void *arg, int index, int thread)
         j->operations = operations;
 }
 
-/** Operations a second of all threads, the best of some turns: a ceiling is what nothing disturbed. */
+/** Operations a second of all threads, the best of several turns: a ceiling is measured without disturbance. */
 static double best_rate(job *j, adcgs_pool *pool)
 {
     const int threads = adcgs_pool_threads(pool);
@@ -90,7 +90,7 @@ void bench_find_ceilings(bench *b)
 {
     float *memory = bench_floats(read_bytes[3] / sizeof(float));
     adcgs_error error = { .status = ADCGS_OK };
-    memset(memory, 1, read_bytes[3]); /* pages never written are all the same one */
+    memset(memory, 1, read_bytes[3]); /* all pages that were never written are the same physical page */
     for (int i = 0; i < 2; i++) {
         adcgs_pool *pool = NULL;
         bench_check(adcgs_pool_create(&pool, i ? b->threads : 1, &error), &error);

@@ -2,7 +2,7 @@
 /** \file
  * Body of the vector loops. The including file defines vectors F of floats and I of 16-bit integers, the number LANES of floats
  * in one, and the operations FMA, SPREAD, LOAD, ADD, ISPREAD, IMADD (products of neighbours, added in pairs) and IADD.
- * Enough chains side by side hide the time that an instruction takes.
+ * Enough independent chains hide the latency of an instruction.
  */
 enum { CHAINS = 10, READS = 8 };
 

@@ -2,7 +2,7 @@
 /** \file Loops of one kind of instruction in plain C. */
 #include "ceilings.h"
 
-enum { CHAINS = 40 }; /* products and sums, which the compiler may do four at a time: it has no multiply-add */
+enum { CHAINS = 40 }; /* products and sums, possibly vectorised by four; without multiply-add */
 
 static double fma_loop(int times, double *operations)
 {

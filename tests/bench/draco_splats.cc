@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Splats by Draco, all of them that is seen; the program that Draco comes with knows of positions, normals and colours alone.
+ * Visible properties of splats, coded by Draco. Draco's own program supports only positions, normals and colours.
  *
  *     encode IN.ply OUT.drc POSITION_BITS OTHER_BITS
  *     decode IN.drc OUT.ply
  *
- * Colours, opacities, logarithms of the extents and rotations, w not below 0, are generic attributes, each rounded to OTHER_BITS
- * of its own range. Of Draco's two methods for point clouds, its slowest speed, the one of fewer bytes is taken.
+ * Colours, opacities, logarithms of the extents and rotations (with w at least 0) are generic attributes. Each is rounded to
+ * OTHER_BITS of its own range. Both of Draco's methods for point clouds run at the slowest speed; the smaller result is written.
  */
 #include "config.h"
 
-/* The standard headers first: what follows includes C headers inside extern "C". */
+/* The standard headers come first, since later includes are C headers inside extern "C". */
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -36,7 +36,7 @@ enum { COLOUR, OPACITY, SCALE, ROTATION, GENERICS };
 const int components[GENERICS] = {3, 1, 3, 4};
 const int bits_max = 30;
 
-/** The numbers of a splat that a generic attribute has. */
+/** Writes the values of a generic attribute of a splat. */
 void take(float *out, const adcgs_splats &s, uint32_t i, int attribute)
 {
     const float sign = s.rotation[0][i] < 0 ? -1.0f : 1.0f;
@@ -47,7 +47,7 @@ void take(float *out, const adcgs_splats &s, uint32_t i, int attribute)
                                          : sign * s.rotation[c][i];
 }
 
-/** The way back; what was rounded is made a rotation and an opacity again. */
+/** The inverse; rounded values become a valid rotation and opacity again. */
 void put(adcgs_splats &s, uint32_t i, int attribute, const float *in)
 {
     float square = 0;
@@ -117,7 +117,7 @@ int encode(const char *from, const char *to, int position_bits, int other_bits)
     return least.empty() || !file;
 }
 
-/** Attributes come back in the order in which they went in. */
+/** Decoded attributes have the order of the encoder. */
 int write(const draco::PointCloud &cloud, const char *to)
 {
     adcgs_splats splats;

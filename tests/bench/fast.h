@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The renderer's kernels once more, compiled without the rules that make them exact: with contraction, reciprocals and all else
- * that -ffast-math allows, but for reordering sums and denying NaN, which would break exp2 and the bounds of loops. They tell
- * what exactness costs.
+ * The renderer's kernels, compiled without the rules that make them exact: with contraction, reciprocals and everything else that
+ * -ffast-math allows. Two parts of it stay off, since they would break exp2 and the bounds of loops: reordering sums, and
+ * assuming that there is no NaN. These kernels measure the cost of exactness.
  */
 #ifndef ADCGS_BENCH_FAST_H
 #define ADCGS_BENCH_FAST_H

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The kernels of its backward pass, AVX2, without the rules that make them exact. */
+/** \file The kernels of the renderer's backward pass, AVX2, without the rules that make them exact. */
 #include "fast.h"
 
 #define adcgs_back_avx2 bench_fast_back_avx2

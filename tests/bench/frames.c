@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Frames: splats drawn, and their gradients. */
+/** \file Frames: rendering of splats, and its gradients. */
 #include "config.h"
 
 #include "fast.h"
@@ -10,24 +10,24 @@
 #include "render/sort.h"
 #include "unit/pixels_scene.h"
 
-#define OVERLAP 36.0 /* splats over a pixel, about */
+#define OVERLAP 36.0 /* splats that cover a pixel, about */
 #define FILTER 0.3f
 
 static const float background[3] = { 0.1f, 0.2f, 0.3f };
 
 /**
- * Operations of binary32 that would keep multiply-add units busy all the time, by count of the kernels' instructions: what is
- * missing of the measured ceiling is everything else. A multiply-add counts two.
+ * Binary32 operations that would keep the multiply-add units busy, counted from the instructions of the kernels. The difference
+ * to the measured ceiling is the cost of all other work. A multiply-add counts as two.
  */
 enum {
     PAIR_OPERATIONS = 26,         /* 13 instructions for a pixel and a splat */
     PAIR_BACK_OPERATIONS = 52,    /* 26 */
-    ENTRY_BACK_OPERATIONS = 1056, /* 33 of sixteen lanes, to add up a splat's sums in a tile */
+    ENTRY_BACK_OPERATIONS = 1056, /* 33 of sixteen lanes, to add up the sums of a splat in a tile */
     ENTRY_OPERATIONS = 640,       /* 20 of sixteen lanes, to list a splat in a tile */
     LOSS_OPERATIONS = 668         /* L1 and SSIM with their gradient, for a pixel */
 };
 
-/** Kernels of a level, ours and the baseline's. */
+/** Kernels of a level: the renderer's and the baseline's. */
 typedef struct kernels {
     const adcgs_raster_dsp *raster;
     const adcgs_back_dsp *back;
@@ -45,9 +45,9 @@ typedef struct frame {
     adcgs_loss *loss;
     float *grads, *rgb, *target, *grad;
     adcgs_raster_grads to;
-    adcgs_kept kept; /**< of the raster's last pass with keep */
+    adcgs_kept kept; /**< of the raster's last forward pass with keep set */
     int tiles;
-    /* What the stages work on when they run by themselves. */
+    /* Data of the stages, which also run separately. */
     adcgs_project_job project;
     adcgs_bin_job bin;
     adcgs_blend_job blend;
@@ -171,7 +171,7 @@ static void plain_draw_and_back(void *arg)
         f->k.back->project(&f->plain_gradients, slot);
 }
 
-/** The root of the mean square of the difference of n numbers, relative to that of the numbers. */
+/** Root mean square of the difference of n numbers, relative to the root mean square of a. */
 static double difference(const float *a, const float *b, size_t n)
 {
     double between = 0, size = 1e-30;
@@ -183,8 +183,8 @@ static double difference(const float *a, const float *b, size_t n)
 }
 
 /**
- * The baseline draws the same picture and finds the same gradients, but for what lies beyond three standard deviations, or
- * comparing times would mean nothing.
+ * The baseline renders the same image and gradients, except beyond three standard deviations of a splat. Otherwise a comparison
+ * of times would mean nothing.
  */
 static void compare(frame *f)
 {
@@ -197,11 +197,11 @@ static void compare(frame *f)
     adcgs_free(NULL, ours);
     if (rgb < 0.001 && gradients < 0.1)
         return;
-    fprintf(stderr, "adcgs-bench: the baseline is not the same: pictures differ by %g, gradients by %g\n", rgb, gradients);
+    fprintf(stderr, "adcgs-bench: the baseline differs: images by %g, gradients by %g\n", rgb, gradients);
     exit(1);
 }
 
-/* ---- A frame's room ---- */
+/* ---- Memory of a frame ---- */
 
 static void make_room(frame *f)
 {
@@ -216,7 +216,7 @@ static void make_room(frame *f)
         f->grad[i] = sinf((float)i);
 }
 
-/** Room for the stages, whose sizes a first frame tells. */
+/** Allocates memory for the stages. The first frame determines its size. */
 static void make_stages(frame *f)
 {
     const uint32_t n = f->primitives.n;
@@ -250,7 +250,7 @@ static void make_stages(frame *f)
     f->gradients.sums = bench_floats((size_t)f->kept.tile_start[f->tiles] * SUM_WORDS);
 }
 
-/** The baseline writes its picture into target. A splat's sums of all tiles are one. */
+/** The baseline writes its image into target. It has one set of sums for each splat, over all tiles. */
 static void make_plain(frame *f)
 {
     uint32_t *one_each = (void *)bench_floats(f->primitives.n + 1);
@@ -297,7 +297,7 @@ static void clear(frame *f)
         adcgs_free(NULL, parts[i]);
 }
 
-/** Pixels of the blocks that splats are listed in, before light runs out. */
+/** Pixels of the blocks in which splats are listed, before light runs out. */
 static double pairs(const frame *f)
 {
     uint64_t blocks = 0;
@@ -312,7 +312,7 @@ static void whole(const bench *b, frame *f, bench_place place)
 {
     const double pixels = (double)place.width * place.height;
     place.group = "frame";
-    if (place.threads > 1) { /* the baseline has one */
+    if (place.threads > 1) { /* the baseline has one thread */
         bench_group(b, &place, &(bench_item){ "draw", draw, f, pixels, "pixel", 0 }, 1, 0);
         place.group = "frame and gradients";
         bench_group(b, &place, &(bench_item){ "draw and back", draw_and_back, f, pixels, "pixel", 0 }, 1, 0);
@@ -333,7 +333,7 @@ static void stages(const bench *b, frame *f, bench_place place)
 {
     const double n = f->n, listed = f->kept.tile_start[f->tiles], drawn = pairs(f);
     const double back = (drawn * PAIR_BACK_OPERATIONS + listed * ENTRY_BACK_OPERATIONS) / drawn;
-    /* Sums of the kept frame, whatever ran since. */
+    /* Restore the sums of the kept frame: other items have run since. */
     draw_and_back(f);
     project(f);
     sort(f);
@@ -362,7 +362,7 @@ void bench_frames(const bench *b, int width, int height, uint32_t splats)
     }
 }
 
-/** All kernels of a frame in a row. */
+/** Runs all kernels of a frame one after the other. */
 static void all_kernels(void *arg)
 {
     project(arg);

@@ -177,7 +177,7 @@ static void decode_positions(void *arg)
     bench_check(adcgs_geom_decode(c->positions.data, c->positions.size, POSITIONS, DEPTH, c->decoded, NULL), NULL);
 }
 
-/** Symbols of a peaked distribution, bits of which a fifth are set, positions about a sphere. */
+/** Symbols of a peaked distribution, bits of which one in five is set, positions on a sphere. */
 static void make_coded(coded *c)
 {
     adcgs_range_enc e;
@@ -202,7 +202,7 @@ static void make_coded(coded *c)
         adcgs_adaptive_enc(&e, &context, adcgs_random64(5, 0, i) % 5 == 0);
     adcgs_range_enc_finish(&e);
     for (uint32_t i = 0; i < POSITIONS; i++)
-        for (uint64_t a = 0; a < 3; a++) /* distinct by the first coordinate's lower bits */
+        for (uint64_t a = 0; a < 3; a++) /* the low bits of the first coordinate make them distinct */
             c->voxels[3 * i + a] = a ? (uint32_t)(adcgs_random64(6, a, i / 64) % 1024) + (uint32_t)(adcgs_random64(7, a, i) % 64)
                                      : (i / 64 * 13 + i % 64) & ((1u << DEPTH) - 1);
     bench_check(adcgs_morton_sort(c->voxels, POSITIONS, NULL, &error) == 0 ? ADCGS_OK : ADCGS_ERR_INTERNAL, &error);

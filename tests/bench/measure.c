@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Measuring. */
+/** \file Measurement. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "ceilings.h"
@@ -34,7 +34,7 @@ int bench_wants(const bench *b, const char *beginning)
 
 /* ---- Turns ---- */
 
-/** Of one thread, the time that it had a processor; of several, the time that passed. */
+/** Processor time of one thread; elapsed time of several. */
 static double clock_of(int threads)
 {
     struct timespec now;
@@ -51,7 +51,7 @@ static double seconds_of(const bench_item *item, int times, int threads)
     return (clock_of(threads) - start) / times;
 }
 
-/** How often an item runs in a turn. The runs that find out also warm it up. */
+/** Number of runs of an item in a turn. The runs that determine it also warm up the item. */
 static int times_of(const bench *b, const bench_item *item, int threads)
 {
     int times = 1;
@@ -61,7 +61,7 @@ static int times_of(const bench *b, const bench_item *item, int threads)
     return times;
 }
 
-/** What one thread can do in a second at this moment. */
+/** Measures the current ceiling of one thread, a second. */
 static double ceiling_now(const bench *b, int integers)
 {
     const bench_loops *const loops = bench_loops_of(b->level);
@@ -79,7 +79,7 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** The value that a share of those in v[n] are below. */
+/** The value below which the given share of v[n] lies. */
 static double percentile(const double *v, int n, double share)
 {
     double sorted[ROUNDS_MAX];

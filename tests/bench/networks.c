@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file All that training does between the anchors' parameters and the primitives, at several widths of the networks. */
+/**
+ * \file The complete computation of training between the anchors' parameters and the primitives, at several widths of the
+ * networks.
+ */
 #include "parts.h"
 
 #include "fmodel/pass.h"
@@ -44,11 +47,14 @@ static void open_networks(networks *n, const bench *b, int width)
         if (n->f->mlp[i].n)
             adcgs_mlp_prepare(&n->f->mlp[i], n->f->param[i].p, 0);
     bench_check(adcgs_pass_create(&n->pass, n->f, b->level, NULL, &error), &error);
-    for (size_t i = 0; i < (size_t)n->pass->primitives.n * ADCGS_ROWS; i++) /* what a picture might ask for */
+    for (size_t i = 0; i < (size_t)n->pass->primitives.n * ADCGS_ROWS; i++) /* plausible gradients of an image */
         n->pass->grad[i] = 1e-3f * (float)(i % 17) - 8e-3f;
 }
 
-/** Multiply-adds of a network on 64 lanes, times two: forward, to the inputs and to the weights. */
+/**
+ * Operations of a network on 64 lanes: two for each multiply-add, for the forward pass, the gradients of inputs and those of
+ * weights.
+ */
 static double operations(const adcgs_mlp *m, double tiles)
 {
     double n = 0;

@@ -1,25 +1,25 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# What one would take instead: peers.sh FILE SCENE OUT, from the build folder. FILE is any stream of the scene. Writes tables for
+# Alternatives to this codec: peers.sh FILE SCENE OUT, from the build folder. FILE is any stream of the scene. Writes tables for
 # adcgs-sweep --add into OUT:
-#   hevc.csv, av1.csv  the pictures of each training camera as a video, by FFmpeg's libx265 and libsvtav1, one thread, at four
-#                      qualities: the bytes of all videos, the mean PSNR of their pictures, CPU seconds to write and to read them.
-#                      Those are training views: there are no others in them. A camera that took one picture makes no video and
-#                      is left out, and it says how many
+#   hevc.csv, av1.csv  the images of each training camera as a video, by FFmpeg's libx265 and libsvtav1, one thread, at four
+#                      qualities: the bytes of all videos, the mean PSNR of their images, CPU seconds to write and to read them.
+#                      All views are training views, since the videos contain no others. A camera with a single image makes no
+#                      video; the script reports the number of such cameras
 #   uncompressed.csv, zstd.csv, xz.csv  the model of the scene trained without rate and rounding (adcgs-enc --uncompressed, one
-#                      thread, seed 1), 4 bytes a number, and that by zstd -19 and xz -9e, which is seen to come back unchanged
-#   ply.csv, draco.csv its splats as PLY, and by Draco at four precisions, read back and drawn. Splats do not move: of a scene
-#                      that does they are those of one moment, and PSNR is that of the test views of this moment alone. What FILE
-#                      and the model have in these views is said on standard output
-#   opensplat.csv      a still scene with points, learnt by OpenSplat on CPUs from the training views alone, drawn by us: its PLY
-#                      file's bytes, CPU seconds of all its threads. PSNR is that over the background that gives more, OpenSplat's
-#                      or the scene's
-# CPU seconds of models are those of training, packing and unpacking. What is not installed is left out, by name, as is what
-# cannot be. What is there already of training is kept.
+#                      thread, seed 1), 4 bytes a number, and packed by zstd -19 and xz -9e. The script verifies the unpacked data
+#   ply.csv, draco.csv splats of this model as PLY, and by Draco at four precisions, read back and rendered. These splats are
+#                      static: for a dynamic scene they are those of one timestamp, and PSNR is that of the test views of this
+#                      timestamp only. The PSNR of FILE and of the model in these views is printed on standard output
+#   opensplat.csv      a static scene with points, trained by OpenSplat on CPUs from the training views only, rendered by this
+#                      project: bytes of its PLY file, CPU seconds of all its threads. PSNR is the higher one of two: over
+#                      OpenSplat's background and over the scene's
+# CPU seconds of models are those of training, packing and unpacking. The script names each program that is not installed and each
+# comparison that is not possible, and leaves them out. Existing results of training are kept.
 #   ITERATIONS            of the model (default 3000)
 #   OPENSPLAT             the program (default opensplat)
 #   OPENSPLAT_ITERATIONS  default "500 2000 7000"
-#   PEERS                 of video, model and opensplat, those wanted (default all)
+#   PEERS                 a selection of video, model and opensplat (default all)
 set -eu
 [ $# -eq 3 ] || { echo "expected FILE SCENE OUT" >&2; exit 2; }
 file=$1 scene=$2 out=$3
@@ -28,7 +28,7 @@ mkdir -p "$out/truth"
 
 need() { command -v "$1" >/dev/null || { echo "peers: no $1: $2 left out" >&2; return 1; }; }
 
-# tell_used VARIABLE: CPU seconds of all that this shell has started and that has ended; a shell of its own would not know.
+# tell_used VARIABLE: CPU seconds of all processes that this shell started and that ended. A subshell would not see them.
 tell_used()
 {
     times >"$out/times"

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# Our own model by general packers, and its splats by Draco, for peers.sh to read with `.`.
+# The project's own model, packed by general packers, and its splats, packed by Draco; read by peers.sh with `.`.
 columns="bytes,psnr,ssim,dynamic_psnr,cpu_seconds,source"
 
-# The model without rate and rounding: OUT/whole.adcgs decodes to it, OUT/whole.raw is it; $trained is what it took, in seconds.
+# Trains the model without rate and rounding. OUT/whole.adcgs decodes to it, OUT/whole.raw contains it; $trained: seconds of
+# training.
 train_whole()
 {
     if [ ! -s "$out/whole.seconds" ]; then
@@ -17,7 +18,7 @@ train_whole()
     quality=$(value psnr "$out/whole.json"),$(value ssim "$out/whole.json"),$(value dynamic_psnr "$out/whole.json")
 }
 
-# pack NAME PROGRAM OPTION: OUT/whole.raw by a packer that loses nothing; that is looked at.
+# pack NAME PROGRAM OPTION: pack OUT/whole.raw with a lossless packer, and verify that it is lossless.
 pack()
 {
     name=$1 program=$2 option=$3
@@ -43,7 +44,7 @@ views_of()
         END { if (n) printf "%.2f dB in %d test view%s", sum / n, n, n == 1 ? "" : "s" }' "$1"
 }
 
-# Which splats: those of one moment, unless all moments are the same. $what says so in tables.
+# Chooses the splats of one timestamp, or of all if the scene is static. $what describes them in tables.
 choose_moment()
 {
     moment=$(tests/bench/adcgs-bench-splats moment "$scene")
@@ -56,7 +57,7 @@ choose_moment()
     fi
 }
 
-# splats_row BYTES PLY SECONDS: a line of a table; splats are drawn from the file.
+# splats_row BYTES PLY SECONDS: a line of a table; splats are rendered from the file.
 splats_row()
 {
     tests/bench/adcgs-bench-splats psnr "$scene" "$2" "$moment" >"$out/psnr"

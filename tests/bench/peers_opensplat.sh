@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# OpenSplat (https://github.com/pierotofy/OpenSplat) on a still scene, for peers.sh to read with `.`.
-opensplat_background=0.613,0.0101,0.3984 # what it draws and learns with
+# OpenSplat (https://github.com/pierotofy/OpenSplat) on a static scene; read by peers.sh with `.`.
+opensplat_background=0.613,0.0101,0.3984 # background that OpenSplat renders and trains with
 
-# learn N: a line of the table, of a run of so many iterations at the pictures' own size.
+# learn N: a line of the table: a run of N iterations at the images' full size.
 learn()
 {
     ply=$out/opensplat/splats-$1.ply

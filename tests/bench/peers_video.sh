@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# HEVC and AV1 on the pictures of each training camera, for peers.sh to read with `.`.
-# The truth is on the left of each picture, with a border of 4 pixels between; chroma of half the size wants even sizes.
+# HEVC and AV1 on the images of each training camera; read by peers.sh with `.`.
+# The original is on the left of each image, followed by a border of 4 pixels. Chroma of half the size needs even sizes.
 crop="crop=floor((iw-8)/6)*2:floor(ih/2)*2:0:0"
 
-# Pictures of each camera as frame-N.png in a folder of its own, in order of time.
+# Writes the images of each camera as frame-N.png to its own folder, in order of time.
 extract()
 {
     [ ! -e "$out/truth/list" ] || return 0
@@ -16,10 +16,10 @@ extract()
     done <"$out/truth/order"
     cut -d' ' -f2 "$out/truth/order" | sort -n | uniq -c | awk '$1 > 1 { print $2 }' >"$out/truth/list"
     left=$(cut -d' ' -f2 "$out/truth/order" | sort -n | uniq -c | awk '$1 == 1' | wc -l)
-    [ "$left" -eq 0 ] || echo "peers: $left cameras with one picture are left out" >&2
+    [ "$left" -eq 0 ] || echo "peers: $left cameras with one image are left out" >&2
 }
 
-# video NAME ENCODER FORMAT OPTIONS QUALITIES: bare streams, since a container is a good part of so short a video.
+# video NAME ENCODER FORMAT OPTIONS QUALITIES: bare streams, since a container would be a large part of so short a video.
 video()
 {
     name=$1 encoder=$2 format=$3 options=$4 qualities=$5
@@ -58,7 +58,7 @@ videos()
 {
     if need ffmpeg "HEVC and AV1" && need jq "HEVC and AV1"; then
         extract
-        [ -s "$out/truth/list" ] || { echo "peers: no camera took several pictures: HEVC and AV1 left out" >&2; return 0; }
+        [ -s "$out/truth/list" ] || { echo "peers: no camera has several images: HEVC and AV1 left out" >&2; return 0; }
         video hevc libx265 hevc "-preset slow -x265-params log-level=none:pools=1:info=0" "16 24 32 40"
         video av1 libsvtav1 obu "-preset 4 -svtav1-params lp=1" "20 35 50 60"
     fi

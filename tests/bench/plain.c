@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The baseline: which tiles a splat touches. */
+/** \file The baseline: lists of the splats in each tile. */
 #include "plain.h"
 
 #include "measure.h"
@@ -26,10 +26,10 @@ void plain_clear(plain_job *job)
     adcgs_free(NULL, job->sums);
 }
 
-/** Tiles of the square about the circle of three standard deviations: [x0, x1) x [y0, y1). */
+/** Tiles of the square around the circle of three standard deviations: [x0, x1) x [y0, y1). */
 static void tiles_of(const plain_job *job, const adcgs_splat2d *s, int tile[4])
 {
-    /* The conic is scaled by -log2(e) / 2; the smaller eigenvalue of the inverse covariance is the larger radius. */
+    /* The conic is scaled by -log2(e) / 2. The larger radius follows from the smaller eigenvalue of the inverse covariance. */
     const float a = -1.3862944f * s->a, b = -0.6931472f * s->b, c = -1.3862944f * s->c;
     const float half = 0.5f * (a + c), least = half - sqrtf(fmaxf(0, half * half - a * c + b * b));
     const float radius = ceilf(3 / sqrtf(fmaxf(least, 1e-12f)));

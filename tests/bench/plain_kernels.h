@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Body of the baseline's kernels: a tile is sixteen rows, each of them sixteen lanes. Needs lanes.h. */
+/** \file Body of the baseline's kernels. A tile has sixteen rows of sixteen lanes. Needs lanes.h. */
 #include "plain.h"
 
 #include "render/alpha.h"
@@ -7,7 +7,7 @@
 static const alignas(64) float columns[16] = {0.5f, 1.5f, 2.5f,  3.5f,  4.5f,  5.5f,  6.5f,  7.5f,
                                               8.5f, 9.5f, 10.5f, 11.5f, 12.5f, 13.5f, 14.5f, 15.5f};
 
-/* Rows and columns of a tile that lie in the picture. */
+/* Position of a tile, and its rows and columns that lie inside the image. */
 static void tile_rect(const plain_job *job, int tile, int rect[4])
 {
     rect[0] = tile % job->tiles_x * 16;
@@ -73,10 +73,10 @@ static void blend(const plain_job *job, int tile)
     }
 }
 
-/* What a row of a tile remembers from back to front. */
+/* State of a row of a tile, from back to front. */
 typedef struct row_state {
     vf t, grad[3];
-    vf behind; /* the gradient times the colour that comes from behind, per light */
+    vf behind; /* gradient times the colour from behind, per unit of light */
 } row_state;
 
 LANES_INLINE void back_row(row_state *r, const adcgs_splat2d *s, vf dx, vf dy, vf sum[12])

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Splats of whatever program against the pictures of a scene, and a scene for such a program to learn from; see peers.sh.
+ * Evaluation of splats of any program on the images of a scene, and export of a scene for training by such a program; see
+ * peers.sh.
  *
- *     moment SCENE         the time, in seconds, of which the most test views are; of several that nearest the middle
- *     psnr SCENE PLY TIME [clip [R,G,B]]  of a PLY file of splats in the scene's coordinates: mean PSNR of the test views of that
- *                          time, and their number; as adcgs-eval has it, of pictures of 8 bits. TIME all: of all. clip: colours
- *                          below 0 are 0, as in viewers of such files, while our decoder adds them as they are. R,G,B is what is
- *                          behind the splats, else it is the scene's background
- *     export SCENE FOLDER  the views for training, straightened, and the initial points as nerfstudio has them, in FOLDER, which
- *                          is there; nothing of any other view. A scene that moves is refused, with masks or without points, too
+ *     moment SCENE         the timestamp, in seconds, with the most test views; of several the one nearest the middle
+ *     psnr SCENE PLY TIME [clip [R,G,B]]  of a PLY file of splats in the scene's coordinates: mean PSNR of the test views at this
+ *                          time, and their number; computed as in adcgs-eval, on images of 8 bits. TIME all: of all views. clip:
+ *                          set negative colours to 0, as viewers of such files do; this project's decoder adds them unchanged.
+ *                          R,G,B is the background, by default the scene's
+ *     export SCENE FOLDER  the undistorted training views, and the initial points in nerfstudio's format, to the existing FOLDER;
+ *                          no data of any other view. Dynamic scenes, scenes with masks and scenes without points are rejected
  */
 #include "config.h"
 
@@ -24,7 +25,7 @@
 #include <stdlib.h>
 
 #define SAME_TIME 1e-9
-#define OPACITY_MAX 0.99f /* of a primitive */
+#define OPACITY_MAX 0.99f /* largest opacity of a primitive */
 #define PATH 4096
 #define NAME 32
 #define DIGITS 17
@@ -56,13 +57,13 @@ static void find_moment(const adcgs_scene *scene)
 
 /* ---- psnr ---- */
 
-/** What a primitive may be, which splats of other programs need not. */
+/** Limits values to the ranges of primitives, which splats of other programs may exceed. */
 static void bound(adcgs_splats *s, int clip)
 {
     for (uint32_t i = 0; i < s->n; i++) {
         s->opacity[i] = fminf(s->opacity[i], OPACITY_MAX);
         for (int c = 0; c < 3 && clip; c++)
-            if (!s->degree) /* else they are clipped as they are seen */
+            if (!s->degree) /* with a degree, colours are clipped when they are evaluated for a view */
                 s->colour[c][i] = fmaxf(s->colour[c][i], 0.0f);
     }
 }
@@ -91,7 +92,7 @@ static adcgs_status measure_view(double *psnr, const adcgs_splat_scene *splats, 
     return status;
 }
 
-/** time: not a number: of all views. */
+/** time: NaN for all views. */
 static adcgs_status measure(const adcgs_scene *scene, const char *path, double time, int clip, const float background[3],
                             adcgs_error *error)
 {
@@ -113,7 +114,7 @@ static adcgs_status measure(const adcgs_scene *scene, const char *path, double t
     adcgs_splats_free(&splats.splats);
     ADCGS_TRY(status);
     if (!n)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "no test view is of that time");
+        return adcgs_fail(error, ADCGS_ERR_DATA, "no test view at this time");
     printf("%.4f %u\n", sum / n, n);
     return ADCGS_OK;
 }
@@ -137,11 +138,11 @@ static adcgs_status parse_and_measure(const adcgs_scene *scene, int argc, char *
 static adcgs_status join(char path[PATH], const char *folder, const char *name, adcgs_error *error)
 {
     if ((size_t)snprintf(path, PATH, "%s/%s", folder, name) >= PATH)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.100s...: too long a path", folder);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.100s...: path too long", folder);
     return ADCGS_OK;
 }
 
-/** Names of ours: those of the scene may say anything, and be the same in two folders. */
+/** Generated names: those of the scene may contain any characters, and may be equal in two folders. */
 static const char *name_view(char name[NAME], uint32_t i)
 {
     snprintf(name, NAME, "train-%04u.png", i);
@@ -165,7 +166,7 @@ static adcgs_status write_picture(const adcgs_scene *scene, const adcgs_scene_vi
     return status;
 }
 
-/** Axes of OpenGL: y up, looking along -z. */
+/** Axes of OpenGL: y up, viewing direction -z. */
 static void put_pose(adcgs_json *json, const adcgs_camera *camera)
 {
     adcgs_json_open(json, "transform_matrix", '[');
@@ -201,7 +202,7 @@ static adcgs_status put_view(adcgs_json *json, const adcgs_scene *scene, uint32_
     return ADCGS_OK;
 }
 
-/** train_filenames is for us: read again as a scene it has no other views. */
+/** train_filenames is for this project: read as a scene again, the export has no other views. */
 static adcgs_status put_scene(adcgs_json *json, const adcgs_scene *scene, const char *folder, adcgs_error *error)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -246,7 +247,7 @@ static adcgs_status export(const adcgs_scene *scene, const char *folder, adcgs_e
 {
     char path[PATH];
     if (scene->duration > 0)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "the scene moves");
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "the scene is dynamic");
     if (!scene->points.n)
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "the scene has no points");
     ADCGS_TRY(join(path, folder, "points.ply", error));
@@ -254,7 +255,7 @@ static adcgs_status export(const adcgs_scene *scene, const char *folder, adcgs_e
     return write_scene(scene, folder, error);
 }
 
-/* ---- What is asked for ---- */
+/* ---- Command line ---- */
 
 static adcgs_status answer(const adcgs_scene *scene, int argc, char **argv, adcgs_error *error)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * How many of the anchors that show what never changes are static. FILE SCENE: a pixel of a camera that stays where it is and
- * takes several pictures changes if the metric's dynamic region has it. An anchor shows what never changes if a hundredth of all
- * that it is drawn with, over all pictures of all such cameras, lies there at most.
+ * Counts the static anchors among those that show only static content. Arguments: FILE SCENE. For a camera that does not move and
+ * has several images, a pixel changes if it is in the metric's dynamic region. An anchor shows only static content if at most a
+ * hundredth of its rendered weight, over all images of all such cameras, lies in changing pixels.
  */
 #include "config.h"
 
@@ -28,11 +28,13 @@ typedef struct still {
     adcgs_splat *splat;
     adcgs_raster *raster;
     adcgs_raster_back *back;
-    double *drawn, *changing; /* [anchors] weights in all pixels, in those that change */
+    double *drawn, *changing; /* [anchors] weights in all pixels, in changing pixels */
     float *rows;              /* gradients of all slots */
 } still;
 
-/** Weights of a picture: the gradient of the red of pixels that change, by a primitive's red, is its weight there. */
+/**
+ * Adds the weights of an image. The weight of a primitive in changing pixels is the gradient of their red by the primitive's red.
+ */
 static adcgs_status add_picture(still *s, const adcgs_scene_view *v, const uint8_t *region, adcgs_error *error)
 {
     const adcgs_model *const m = &s->stream.segments[0];
@@ -66,7 +68,7 @@ static adcgs_status add_picture(still *s, const adcgs_scene_view *v, const uint8
     return status;
 }
 
-/** A camera's n views. */
+/** Adds the n views of a camera. */
 static adcgs_status add_camera(still *s, const uint32_t *view, uint32_t n, adcgs_error *error)
 {
     const adcgs_scene_view *const v = s->scene->views[ADCGS_SPLIT_TRAIN];
@@ -88,7 +90,7 @@ static adcgs_status add_camera(still *s, const uint32_t *view, uint32_t n, adcgs
     return status;
 }
 
-/** All cameras that take several pictures; *cameras: how many those are. */
+/** Adds all cameras with several images; *cameras is incremented for each. */
 static adcgs_status add_cameras(still *s, uint32_t *cameras, adcgs_error *error)
 {
     const uint32_t n_views = s->scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -134,7 +136,7 @@ static adcgs_status measure(still *s, adcgs_error *error)
         shows++;
         is_static += still_here != 0;
     }
-    printf("%u cameras; %u of %u anchors are seen, %u of them static; %u show what never changes, of these %u static (%.1f %%)\n",
+    printf("%u cameras; %u of %u anchors are visible, %u of them static; %u show static content, %u of these static (%.1f %%)\n",
            cameras, seen, m->n, all, shows, is_static, shows ? 100.0 * is_static / shows : 0);
     return ADCGS_OK;
 }

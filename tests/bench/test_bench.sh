@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# The benchmark runs, finds its baseline drawing the same picture, and writes its table. Runs in the build folder.
+# The benchmark runs, its baseline renders the same image, and it writes its table. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 bench=tests/bench/adcgs-bench
 need $bench tests/bench/adcgs-bench-still adcgs-demo-scene adcgs-enc
@@ -11,12 +11,13 @@ for group in frame exactness levels decode; do
     awk -F, 'NR == 1 { n = NF } NF != n || NR > 1 && !($9 > 0) { exit 1 } END { exit NR < 2 }' "$dir/$group.csv" ||
         { bad "the table of $group"; cat "$dir/$group.csv"; }
 done
-$bench --group nothing >"$dir/out" 2>&1 && bad "a group that is not there"
+$bench --group nothing >"$dir/out" 2>&1 && bad "no error for an unknown group"
 
-# Of a tiny scene, whose six cameras take four pictures each, it tells what shows nothing that changes; of no scene nothing.
+# For a tiny scene, whose six cameras have four images each, adcgs-bench-still reports anchors of static content. A missing scene
+# is an error.
 tiny_stream 40
 still=tests/bench/adcgs-bench-still
-$still "$dir/s.adcgs" "$dir/scene" >"$dir/out" 2>&1 && grep -q '^6 cameras; .* show what never changes, of these ' "$dir/out" ||
+$still "$dir/s.adcgs" "$dir/scene" >"$dir/out" 2>&1 && grep -q '^6 cameras; .* show static content, ' "$dir/out" ||
     { bad "$still"; cat "$dir/out"; }
-$still "$dir/s.adcgs" "$dir/nowhere" >"$dir/out" 2>&1 && bad "$still: a scene that is not there"
+$still "$dir/s.adcgs" "$dir/nowhere" >"$dir/out" 2>&1 && bad "$still: no error for a missing scene"
 exit $failed

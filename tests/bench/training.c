@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Whole iterations of training, then the decoding and playing of what was trained. */
+/** \file Complete iterations of training; then decoding and playing of the trained model. */
 #include "parts.h"
 
 #include "encode/encode.h"
@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-/* A run is asked every tenth iteration whether it shall go on: these are multiples of that. */
+/* Training asks its callback every tenth iteration whether to continue, so these are multiples of ten. */
 enum { YOUTH = 1500, WARM_UP = 40, AT_A_TIME = 10, ROUNDED = 20, FRAMES = 32 };
 
 typedef struct training {
@@ -45,8 +45,8 @@ static void some_iterations(void *arg)
 }
 
 /**
- * Everything takes part in every iteration, and nothing changes the number of anchors. Splats begin large and faint, hundreds
- * over each other; a youth with small pictures, as presets have it, leaves what most of a run works on.
+ * Every mechanism takes part in every iteration, and the number of anchors stays the same. Splats start large and faint, with
+ * hundreds over each other. A first phase with small images, as presets have it, brings them to the state of most of a run.
  */
 static adcgs_train_config steady(const char *preset, uint32_t anchors)
 {
@@ -72,7 +72,7 @@ static adcgs_scene *open_scene(const char *folder, int width, int height)
     const adcgs_scene_options options = { .points_path = NULL };
     snprintf(path, sizeof path, "%s/tiny-%dx%d", folder, width, height);
     if (stat(path, &there) != 0) {
-        mkdir(folder, 0777); /* if it fails, so does what follows, with a message */
+        mkdir(folder, 0777); /* if it fails, the next call fails with a message */
         bench_check(adcgs_scenes_write(path, &made, NULL, NULL, NULL, &error), &error);
     }
     bench_check(adcgs_scene_open(&scene, path, &options, &error), &error);
@@ -99,7 +99,7 @@ static void open_stream(void *arg)
     bench_check(adcgs_open_memory(&p->decoder, p->stream->data, p->stream->size, &p->config, &error), &error);
 }
 
-/** One frame after another, each at a time of its own. */
+/** Plays one frame after another, each at its own time. */
 static void play(void *arg)
 {
     player *p = arg;
@@ -142,7 +142,7 @@ static void decode_and_play(const bench *b, const adcgs_buffer *stream, bench_pl
     }
 }
 
-/** Let the run round and freeze, and write it. */
+/** Rounds and freezes the model, and writes it. */
 static void write_stream(training *r, adcgs_pool *pool, adcgs_buffer *out)
 {
     adcgs_stream stream;

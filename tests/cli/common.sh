@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# What the tests of the command lines share; to be read with `.` in the build folder.
+# Shared by the tests of the command lines, which read it with `.` in the build folder.
 
-# need TOOL...: leave, skipped, unless all of them are built here; then a folder of our own, gone at the end, is $dir.
+# need TOOL...: skip the test if a tool is not built here. Creates the temporary folder $dir, which is removed at the end.
 need()
 {
     for tool; do
@@ -14,7 +14,8 @@ need()
 failed=0
 bad() { echo "FAILED: $*"; failed=1; }
 
-# tiny_scene FOLDER: a scene of a few small pictures. tiny_stream ITERATIONS: one in $dir/scene, and its stream $dir/s.adcgs.
+# tiny_scene FOLDER: a scene of a few small images. tiny_stream ITERATIONS: such a scene in $dir/scene, and its stream
+# $dir/s.adcgs.
 tiny_scene()
 {
     ./adcgs-demo-scene --scene tiny --format ppm -o "$1" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
@@ -22,13 +23,13 @@ tiny_scene()
 tiny_stream()
 {
     tiny_scene "$dir/scene"
-    # From random points: so short a run leaves large splats where matched ones are not. With f_g: there are layers.
+    # Start from random points: with matched points so short a run would leave no large splats. f_g gives the stream layers.
     ./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --set stereo=0,n_fg=8 --iterations "$1" --threads 2 >"$dir/out" 2>&1 ||
         { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
 }
 
-# expect CODE TEXT COMMAND...: exit code; TEXT (a basic regular expression), if not empty, on standard error, which has
-# exactly one line if the code is not 0. What the command prints is in $dir/out and $dir/err.
+# expect CODE TEXT COMMAND...: the command exits with CODE. TEXT (a basic regular expression), if not empty, is on standard error,
+# which has exactly one line if CODE is not 0. The command's output is in $dir/out and $dir/err.
 expect()
 {
     code=$1 text=$2
@@ -36,12 +37,12 @@ expect()
     "$@" >"$dir/out" 2>"$dir/err"
     got=$?
     [ "$got" -eq "$code" ] || { bad "exit code $got, expected $code: $*"; cat "$dir/err"; }
-    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/err"; }
-    [ "$code" -eq 0 ] || [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "not one line on standard error: $*"; cat "$dir/err"; }
+    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "expected \"$text\" in the message of: $*"; cat "$dir/err"; }
+    [ "$code" -eq 0 ] || [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "expected one line on standard error: $*"; cat "$dir/err"; }
 }
 
-# interrupt SIGNAL LOG TEXT COMMAND...: send a run a signal once its log has a line with TEXT (a basic regular expression); what
-# it printed is in $dir/stop.out and $dir/stop.err. Where so busy a machine was too late for that it is tried again.
+# interrupt SIGNAL LOG TEXT COMMAND...: run the command, and send it a signal once its log has a line with TEXT (a basic regular
+# expression). Its output is in $dir/stop.out and $dir/stop.err. If the signal came too late on a busy machine, try again.
 interrupt()
 {
     signal=$1 log=$2 text=$3

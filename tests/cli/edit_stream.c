@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file edit-stream FILE OLD NEW: put a text in the place of one that is as long, and make all checksums right again. */
+/** \file edit-stream FILE OLD NEW: replace a text by another one of the same length, and update all checksums. */
 #define _GNU_SOURCE
 
 #include "stream_edit.h"

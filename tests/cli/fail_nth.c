@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Runs a command and makes the n-th of the system calls fail by which it changes files below a folder: creating one, writing,
- * syncing, truncating, closing what was written, renaming. A filter of seccomp hands these calls to us, of all threads and
- * children, root's too; nothing in the programs knows of it. Says how many calls there were.
+ * Runs a command and makes the n-th system call fail that changes files below a folder: creating a file, writing, syncing,
+ * truncating, closing a written file, renaming. A seccomp filter passes these calls of all threads and children to this process,
+ * for root, too; the programs do not notice it. Reports the number of such calls.
  */
-#include "config.h" /* for the declarations that it switches on in system headers */
+#include "config.h" /* for the declarations that it enables in system headers */
 
 #ifndef __linux__
 int main(void)
@@ -34,7 +34,7 @@ int main(void)
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 
-#ifndef SECCOMP_USER_NOTIF_FLAG_CONTINUE /* Linux 5.5 */
+#ifndef SECCOMP_USER_NOTIF_FLAG_CONTINUE /* since Linux 5.5 */
 #define SECCOMP_USER_NOTIF_FLAG_CONTINUE 1
 #endif
 #define SKIPPED 77
@@ -42,7 +42,7 @@ int main(void)
 
 typedef enum kind {
     OF_FILE,  /**< a descriptor is the first argument */
-    CLOSING,  /**< likewise, and it matters only if it was written to */
+    CLOSING,  /**< the same, counted only for a file with content */
     CREATING, /**< the second argument is a path, the third flags */
     OLD_PATH, /**< the first argument is a path */
     AT_PATH   /**< the second argument is a path */
@@ -51,7 +51,7 @@ typedef enum kind {
 static const struct call {
     int number;
     kind kind;
-    int reason; /* what it fails with */
+    int reason; /* error code of a failing call */
 } calls[] = {
     {SYS_write, OF_FILE, ENOSPC},    {SYS_pwrite64, OF_FILE, ENOSPC}, {SYS_writev, OF_FILE, ENOSPC},
     {SYS_pwritev, OF_FILE, ENOSPC},  {SYS_ftruncate, OF_FILE, EIO},   {SYS_fsync, OF_FILE, EIO},
@@ -63,11 +63,11 @@ static const struct call {
 };
 enum { CALLS = sizeof calls / sizeof *calls };
 
-/** What is counted, and what fails. */
+/** Selection of the failing calls, and the count. */
 typedef struct plan {
     const char *folder;
-    long n;   /* the n-th */
-    int rest; /* and all that follow */
+    long n;   /* number of the failing call */
+    int rest; /* the calls after it fail, too */
     long counted;
 } plan;
 
@@ -88,7 +88,7 @@ static int install(void)
     return (int)syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_NEW_LISTENER, &program);
 }
 
-/** A descriptor through a socket; -1 sends none. */
+/** Sends a descriptor through a socket; -1 sends none. */
 static void send_descriptor(int to, int fd)
 {
     char byte = 0;
@@ -140,7 +140,7 @@ static pid_t start(char **argv, int *listener)
     return child;
 }
 
-/* ---- Its calls ---- */
+/* ---- The system calls ---- */
 
 static int is_below(const plan *p, const char *path)
 {
@@ -148,7 +148,9 @@ static int is_below(const plan *p, const char *path)
     return !strncmp(path, p->folder, n) && (path[n] == '/' || !path[n]);
 }
 
-/** A descriptor of the process is a regular file below the folder, of some size at least, and open for writing. */
+/**
+ * True if a descriptor of the process is a regular file below the folder, has at least the given size, and is open for writing.
+ */
 static int is_ours(const plan *p, pid_t process, int fd, off_t least)
 {
     char name[64], path[PATH_MAX];
@@ -158,7 +160,7 @@ static int is_ours(const plan *p, pid_t process, int fd, off_t least)
     if (n < 0 || stat(name, &status) || !S_ISREG(status.st_mode) || status.st_size < least)
         return 0;
     path[n] = 0;
-    if (lstat(name, &status) || !(status.st_mode & S_IWUSR)) /* the link's mode is the descriptor's */
+    if (lstat(name, &status) || !(status.st_mode & S_IWUSR)) /* the link's mode shows the mode of the descriptor */
         return 0;
     return is_below(p, path);
 }
@@ -166,7 +168,7 @@ static int is_ours(const plan *p, pid_t process, int fd, off_t least)
 static int names_ours(const plan *p, pid_t process, uint64_t address)
 {
     char path[PATH_MAX] = "";
-    const size_t most = sizeof path - 1, n = 4096 - address % 4096; /* the page behind may not be there */
+    const size_t most = sizeof path - 1, n = 4096 - address % 4096; /* the next page may not be mapped */
     struct iovec here = {path, most};
     struct iovec there[2] = {{(void *)(uintptr_t)address, n < most ? n : most}, {(void *)(uintptr_t)(address + n), 0}};
     there[1].iov_len = most - there[0].iov_len;
@@ -218,7 +220,7 @@ static void answer(plan *p, int listener)
     ioctl(listener, SECCOMP_IOCTL_NOTIF_SEND, &reply);
 }
 
-/** Until the command has ended. \return its exit code as a shell has it */
+/** Handles system calls until the command has ended. \return its exit code, in the shell's convention */
 static int serve(plan *p, pid_t child, int listener)
 {
     int state = 0;
@@ -235,7 +237,7 @@ int main(int argc, char **argv)
 {
     if (argc < 5) {
         fprintf(stderr, "usage: fail-nth FOLDER REPORT N|N+ COMMAND...\n"
-                        "Fail the N-th change below FOLDER, with + all that follow too; write to REPORT how many there were.\n");
+                        "Fail the N-th change below FOLDER, with + all later ones, too; write their number to REPORT.\n");
         return BROKEN;
     }
     int listener;
@@ -244,7 +246,7 @@ int main(int argc, char **argv)
     p.rest = *end == '+';
     const pid_t child = start(argv + 4, &listener);
     if (child < 0 || listener < 0) {
-        fprintf(stderr, "fail-nth: this system lets no process see another's calls (seccomp)\n");
+        fprintf(stderr, "fail-nth: seccomp notification of system calls is not available\n");
         return SKIPPED;
     }
     const int code = serve(&p, child, listener);

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# What the tests of --live share, to be read behind common.sh: the tiny scene as footage of six cameras, in $scene.
+# Shared by the tests of --live, which read it after common.sh. Makes the tiny scene, as footage of six cameras, in $scene.
 
 scene=$dir/scene
 tiny_scene "$scene"
-# For quality there would have to be more iterations; most of what is asked here has nothing to do with it.
+# Good quality would need more iterations; most of these tests do not depend on quality.
 short="--preset draft --max-anchors 300 --iterations 100 --quiet"
 live="$short --segment 0.1 --key 0.1"
 export TMPDIR="$dir"
 
-# scene_file FOLDER KIND: the cameras of the tiny scene, three at even moments, three at odd ones, with images or videos.
+# scene_file FOLDER KIND: the cameras of the tiny scene, three at even time steps, three at odd ones, with images or videos.
 scene_file()
 {
     mkdir -p "$1/c0" "$1/c1" "$1/c2" "$1/c3" "$1/c4" "$1/c5"
@@ -25,11 +25,11 @@ scene_file()
         }' "$scene/transforms_train.json" >"$1/scene.json"
 }
 
-# view I: picture I of the scene, and where it goes: the name of its camera and its number.
+# from I: the file of image I of the scene; to I: its place in the footage, from the camera's name and the image's number.
 from() { printf '%s/train/r_%03d.ppm' "$scene" "$1"; }
 to() { printf 'c%d/%03d.ppm' $(($1 % 6)) $(($1 / 6)); }
 
-# put FOLDER MOMENT...: the three pictures of each of these moments, 0 to 7, come.
+# put FOLDER MOMENT...: add the three images of each of these time steps, 0 to 7.
 put()
 {
     folder=$1
@@ -41,23 +41,23 @@ put()
     done
 }
 
-# wait_for N FILE: until the file has N segments, or the encoder, $pid, has gone.
+# wait_for N FILE: wait until the file has N segments, or the encoder, $pid, has exited.
 segments() { ./adcgs-info --json "$1" 2>/dev/null | grep -c '"predicted":'; }
 wait_for()
 {
     while kill -0 "$pid" 2>/dev/null && [ "$(segments "$2")" -lt "$1" ]; do
         sleep 0.1
     done
-    [ "$(segments "$2")" -ge "$1" ] || { bad "$2 does not get $1 segments"; cat "$dir/err"; }
+    [ "$(segments "$2")" -ge "$1" ] || { bad "$2 has fewer than $1 segments"; cat "$dir/err"; }
 }
 spans() { ./adcgs-info "$1" | sed -n 's/^segment \([0-9]*\): \([0-9.]*\) \.\. \([0-9.]*\) s,.*/\1 \2 \3/p' | xargs; }
-whole() { ./adcgs-info --check "$1" 2>&1 | grep -q ' 0 faults' || { bad "$1 is not whole"; ./adcgs-info --check "$1"; }; }
-# ended CODE: the encoder has.
+whole() { ./adcgs-info --check "$1" 2>&1 | grep -q ' 0 faults' || { bad "$1 has faults"; ./adcgs-info --check "$1"; }; }
+# ended CODE: wait for the encoder, and check its exit code.
 ended()
 {
     wait "$pid"
     got=$?
     [ "$got" -eq "$1" ] || { bad "exit code $got, expected $1"; cat "$dir/err"; }
 }
-# What a run leaves behind that it should not.
+# Temporary files that a run left behind.
 left() { find "$dir" -maxdepth 1 -name 'adcgs-live-*' -o -maxdepth 1 -name '*.tmp*'; }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Writes a small scene of every kind, each into a folder of its kind's name: `make-scenes FOLDER`. What it prints is a line for
- * each: the folder's name, and below it the scene ("." for the folder itself). Kinds of videos are left out where none can be
- * written.
+ * Writes a small scene of every kind, each into a folder named after its kind: `make-scenes FOLDER`. Prints a line for each
+ * scene: the folder's name, and the path of the scene below it ("." for the folder itself). Kinds with videos are left out if
+ * this build cannot write videos.
  */
 #include "../unit/layout_kinds.h"
 

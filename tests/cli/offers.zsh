@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# zsh -f offers.zsh FUNCTIONS LINE...: what zsh offers at the end of each line, sorted, in one line with | between, with completion
-# functions from that folder, too.
+# zsh -f offers.zsh FUNCTIONS LINE...: prints the completions that zsh offers at the end of each LINE: one output line each,
+# sorted, separated by |. zsh also reads the completion functions of the folder FUNCTIONS.
 zmodload zsh/zpty
 folder=$1
 shift

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# An encoder, an evaluation and what tells of streams that only pretend, in $dir beside an adcgs-sweep that is real; to be read with
+# A stand-in for the encoder, one for the evaluation and one for adcgs-info, in $dir next to the real adcgs-sweep. Read it with
 # `.` after common.sh.
 cp ./adcgs-sweep "$dir/adcgs-sweep" || exit 99
 out=$dir/out
 mkdir "$dir/scene"
 
-# The pretended encoder: 64000 bytes over lambda at 36 - lambda dB, with features for each primitive twice that; 0.1 dB a seed; half a
-# dB less for each part left out of the method. An uncompressed model has 400000 zeros and 35.05 dB. It lists its calls, goes
-# on from nothing but what it began, and refuses lambda 666 half way. It does not end while there is a file "slow", and is no rank of MPI.
+# The stand-in encoder gives 64000 bytes / lambda at 36 - lambda dB; with features for each primitive twice as many bytes. It adds
+# 0.1 dB for each seed and subtracts 0.5 dB for each part left out of the method. An uncompressed model has 400000 zeros and 35.05
+# dB. It records its calls, resumes only runs that it began, and fails half way for lambda 666. It does not end while a file
+# "slow" exists, and exits with 5 as a rank of MPI.
 cat >"$dir/adcgs-enc" <<'END'
 #!/bin/bash
 here=$(dirname "$0") lambda=1 seed=0 without= raw= begin= resume= partial=
@@ -47,9 +48,9 @@ fi
 { echo "$psnr"; head -c $((bytes - 5)) /dev/zero; } >"$file"
 echo "{\"bytes\": $bytes, \"components\": {\"networks\": 1000}, \"weights\": 750, \"uncompressed_bytes\": 400000, \"cpu_seconds\": 1.5, \"objective\": 0.025}"
 END
-# The pretended evaluation finds 10 dB less where something moves, which it does while there is a file of that name; 1 dB less for
-# each of three layers and 2 for each of two tiers that it does without, nothing in a beginning of less than 4000 bytes; and no
-# memory for tiers while there is a file "broken". There are views while there is a file of that name: two cameras, two moments.
+# The stand-in evaluation gives a PSNR of dynamic regions, 10 dB lower, while a file "moving" exists. It subtracts 1 dB for each
+# of three layers and 2 dB for each of two tiers that are left out. It fails for prefixes of less than 4000 bytes, and for tiers
+# (out of memory) while a file "broken" exists. It reports views while a file "views" exists: two cameras, two timestamps.
 cat >"$dir/adcgs-eval" <<'END'
 #!/bin/bash
 here=$(dirname "$0") moving=null layers=3 tiers=2 views=
@@ -74,7 +75,7 @@ done
 echo "{\"views\": [$views], \"psnr\": ${psnr%??}.${psnr: -2}, \"ssim\": 0.9,"
 echo "\"dynamic_psnr\": $moving, \"frames_per_second\": 100}"
 END
-# Chunks of two tiers of three layers; of one of each while there is a file "flat". What a chunk takes follows its type.
+# Chunks of two tiers of three layers, or of one of each while a file "flat" exists. The size of a chunk depends on its type.
 cat >"$dir/adcgs-info" <<'END'
 #!/bin/bash
 here=$(dirname "$0") layers=3 tiers=2 at=0
@@ -94,7 +95,7 @@ fail()
     exit 1
 }
 
-# Drawing takes longer than all else: there is no gnuplot in $dir/bin.
+# Charts take longer than everything else: there is no gnuplot in $dir/bin.
 mkdir "$dir/bin"
 IFS=: read -ra folders <<<"$PATH"
 for folder in "${folders[@]}"; do
@@ -102,14 +103,15 @@ for folder in "${folders[@]}"; do
 done
 rm -f "$dir"/bin/gnuplot*
 
-# sweep OPTIONS...: run one, its report in report, messages in err; got is how it left. With charts: drawn=$PATH sweep OPTIONS...
+# sweep OPTIONS...: run a sweep; the report goes to report, messages to err, the exit code to $got. With charts:
+# drawn=$PATH sweep OPTIONS...
 sweep()
 {
     PATH=${drawn-$dir/bin} "$dir/adcgs-sweep" "$dir/scene" -o "$out" "$@" >"$dir/report" 2>"$dir/err" </dev/null
     got=$?
 }
 
-# calls N TEXT: so many calls of the encoder since the last look, of those so many with TEXT.
+# calls N [M TEXT]: there were N calls of the encoder since the previous check, M of them with TEXT.
 calls()
 {
     [ "$(wc -l <"$dir/calls")" -eq "$1" ] || fail "expected $1 calls: $(cat "$dir/calls")"

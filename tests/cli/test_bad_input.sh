@@ -1,21 +1,22 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Scenes of every kind, in which a file is broken in every way there is: adcgs-enc and adcgs-eval refuse them in one line that
-# names the file and says what is wrong, soon, with little memory, and what was there before stays. Runs in the build folder.
+# Scenes of every kind with a file damaged in every possible way. adcgs-enc and adcgs-eval reject them in one line that names the
+# file and the fault, quickly and with little memory, and existing output stays unchanged. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-eval adcgs-info tests/cli/make-scenes
 kinds=$dir/kinds s=$dir/scene
 mkdir "$kinds"
 tests/cli/make-scenes "$kinds" >"$dir/list" || { bad "make-scenes"; exit 1; }
-grep -q videos "$dir/list" || echo "skipped: scenes of videos: this build writes none"
+grep -q videos "$dir/list" || echo "skipped: scenes of videos: this build cannot write videos"
 
-# Address space of a run in KiB: libraries and threads have enough, a picture of 16384x16384 has not. A sanitizer wants it all.
+# Address space of a run in KiB: enough for libraries and threads, too little for an image of 16384x16384. A sanitizer needs all
+# of the address space.
 memory=2500000
 (ulimit -v $memory && ./adcgs-enc --version) >/dev/null 2>&1 || memory=unlimited
-# run COMMAND...: its exit code, 124 if it hangs.
+# run COMMAND...: gives its exit code, 124 if it hangs.
 run() { (ulimit -v $memory && exec timeout 30 "$@") >"$dir/out" 2>"$dir/err" </dev/null; }
 
-# take KIND: a fresh copy of a scene, and where it is.
+# take KIND: copy a scene; $scene is its path.
 take()
 {
     kind=$1
@@ -25,10 +26,11 @@ take()
     scene=${scene%/.}
 }
 
-# mend FILE: what it was.
+# mend FILE: restore the original.
 mend() { rm -rf "${s:?}/$1" && cp "$kinds/$kind/$1" "$s/$1"; }
 
-# refused TEXT PROGRAM ARGUMENTS...: with TEXT (a basic regular expression) in one line; "$dir/x" stays what it is.
+# refused TEXT PROGRAM ARGUMENTS...: the program fails with TEXT (a basic regular expression) in one line; "$dir/x" stays
+# unchanged.
 refused()
 {
     text=$1 program=$2
@@ -41,8 +43,8 @@ refused()
         *) bad "$what: exit code $got: $program"; cat "$dir/err" ;;
     esac
     [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "$what: not one line on standard error: $program"; cat "$dir/err"; }
-    grep -q -- "$text" "$dir/err" || { bad "$what: no \"$text\" in the message of $program"; cat "$dir/err"; }
-    grep -qx precious "$dir/x" || bad "$what: $program touched its output"
+    grep -q -- "$text" "$dir/err" || { bad "$what: expected \"$text\" in the message of $program"; cat "$dir/err"; }
+    grep -qx precious "$dir/x" || bad "$what: $program changed its output"
     [ -z "$VERBOSE" ] || sed "s#^#$what: #" "$dir/err"
 }
 short="--preset draft --iterations 10 --max-anchors 100 --threads 2"
@@ -54,7 +56,7 @@ both()
     refused "$1" adcgs-eval "$dir/good.adcgs" "$scene" --csv "$dir/x" --threads 2
 }
 
-# spoil WAY FILE: break a file below the scene.
+# spoil WAY FILE: damage a file of the scene.
 spoil()
 {
     way=$1 at=$s/$2
@@ -70,29 +72,29 @@ spoil()
         closed) chmod 000 "$at" ;;
         cut) head -c $(($(wc -c <"$at") * 2 / 3)) "$at" >"$dir/part" && mv "$dir/part" "$at" ;;
         garbage) echo 'what is this?' >"$at" ;;
-        large) truncate -s 100G "$at" ;; # takes no room
+        large) truncate -s 100G "$at" ;; # takes no disk space
         gigantic) printf 'P6\n99999 99999\n255\n' >"$at" ;;
         big) printf 'P6\n16384 16384\n255\n' >"$at" ;;
         other) printf 'P6\n16 6\n255\n%0288d' 0 >"$at" ;;
     esac
 }
-# What cannot be opened, or holds nothing.
+# Ways that make a file impossible to open, or empty.
 closed=closed
-[ "$(id -u)" -eq 0 ] && closed= # for root, everything is open
+[ "$(id -u)" -eq 0 ] && closed= # root can open every file
 ways="missing empty loop dangling folder pipe device $closed"
 
-# They are good before they are broken, within the limits of time and memory.
+# The undamaged scenes are valid within the limits of time and memory.
 take dnerf
 # shellcheck disable=SC2086
 run ./adcgs-enc "$scene" -o "$dir/good.adcgs" $short || { bad "dnerf: cannot be encoded"; cat "$dir/err"; exit 1; }
-run ./adcgs-eval "$dir/good.adcgs" "$scene" --images "$dir/views" --threads 2 || memory=unlimited # its libraries want more here
-./adcgs-info "$dir/good.adcgs" | grep -q 'colour sRGB' || bad "a stream does not tell its colours"
+run ./adcgs-eval "$dir/good.adcgs" "$scene" --images "$dir/views" --threads 2 || memory=unlimited # its libraries need more here
+./adcgs-info "$dir/good.adcgs" | grep -q 'colour sRGB' || bad "adcgs-info: no colour space"
 while read -r kind _; do
     take "$kind"
     run ./adcgs-eval "$dir/good.adcgs" "$scene" --threads 2 || { bad "$kind: cannot be evaluated"; cat "$dir/err"; }
 done <"$dir/list"
 
-# expected: what is said of a file that is spoilt in a way, where that is not its name.
+# expected FILE: the expected message for a file damaged in the current way; by default the file's name.
 expected()
 {
     case $kind-$way-$1 in
@@ -109,7 +111,7 @@ expected()
     esac
 }
 
-# Files that cannot be read, in every place of every kind: training and test pictures, poses, points.
+# Files that cannot be read, in every place of every kind: training and test images, poses, points.
 while read -r kind files; do
     grep -q "^$kind " "$dir/list" || continue
     take "$kind"
@@ -136,7 +138,7 @@ colmap-videos videos/1.mp4 videos/0.mp4 sparse/images.txt
 adcgs cam1/0000.ppm cam1/0002.ppm cam0/0001.ppm scene.json
 splats splats.ply
 END
-# Without its file there is no test split; one that is there has to be good. Points may be there, and then have to be good too.
+# Without its file there is no test split, but a present file has to be valid. Points are optional; present ones have to be valid.
 for way in $ways; do
     [ "$way" != missing ] || continue
     for file in transforms_test.json points3d.ply; do
@@ -157,8 +159,8 @@ for way in $ways; do
     refused mine.ply adcgs-enc "$scene" -o "$dir/x" --points "$s/mine.ply" $short
 done
 
-# Files that are not what they should be. Pictures are refused by who reads them: those for testing are read at the end, when
-# the stream is written, but what their headers say is known at the beginning.
+# Files with invalid content. Damaged images are reported by the program that reads them. The encoder reads test images only at
+# the end, after it has written the stream; their headers are checked at the beginning.
 while read -r kind train test files; do
     grep -q "^$kind " "$dir/list" || continue
     take "$kind"
@@ -194,9 +196,9 @@ END
 take dnerf
 spoil cut 0.ppm
 run ./adcgs-enc "$scene" -o "$dir/x" --preset draft --iterations 10 --threads 2 &&
-    bad "$what: adcgs-enc says nothing of a test picture"
+    bad "$what: adcgs-enc does not report a damaged test image"
 grep -q "0.ppm: ends in row 10 of 16; but $dir/x is written" "$dir/err" || { bad "$what: the message"; cat "$dir/err"; }
-[ "$(wc -l <"$dir/err")" -eq 1 ] && ./adcgs-info "$dir/x" >/dev/null || bad "$what: the stream"
+[ "$(wc -l <"$dir/err")" -eq 1 ] && ./adcgs-info "$dir/x" >/dev/null || bad "$what: no valid stream, or not one line"
 while read -r kind file; do
     grep -q "^$kind " "$dir/list" || continue
     take "$kind"
@@ -216,8 +218,8 @@ what="splats: too many"
 sed 's/vertex 125/vertex 4000000000/' "$kinds/splats/splats.ply" >"$s/splats.ply"
 both "splats.ply: "
 
-# Pictures of other formats that are larger than they may be, or than their camera says; one that ends early.
-# format EXTENSION WHAT TEXT BYTES [ZEROS]: a picture of LLFF in their place, with so many zeros behind.
+# Images of other formats that are larger than the limit, or than their camera says; one that ends early.
+# format EXTENSION WHAT TEXT BYTES [ZEROS]: put an image of BYTES, followed by ZEROS zeros, in the place of an image of LLFF.
 format()
 {
     take llff
@@ -231,7 +233,7 @@ png='\211PNG\15\12\32\12\0\0\0\15IHDR'
 idat='\0\0\0\14IDATx\234c\140\240\75\0\0\0d\0\1'
 format png "gigantic PNG" "99999x99999 pixels, expected" "$png"'\0\1\206\237\0\1\206\237\10\2\0\0\0K\344\360R'$idat
 format png "big PNG" "16384x16384 pixels, expected 24x16" "$png"'\0\0\100\0\0\0\100\0\10\2\0\0\0\46\252\207\323'$idat
-# tiff SIZE: a header of so many pixels in a square, four bytes each way.
+# tiff SIZE: the header of a square image; SIZE is its side as four bytes.
 tiff()
 {
     printf '%s' 'II*\0\10\0\0\0\11\0\0\1\4\0\1\0\0\0'"$1"'\1\1\4\0\1\0\0\0'"$1"'\2\1\3\0\1\0\0\0\10\0\0\0\3\1\3\0\1\0\0\0\1\0\0\0'
@@ -240,7 +242,7 @@ tiff()
 }
 format tif "gigantic TIFF" "99999x99999 pixels, expected" "$(tiff '\237\206\1\0')"
 format tif "big TIFF" "16384x16384 pixels, expected 24x16" "$(tiff '\0\100\0\0')"
-# exr LAST: one with this for the last row and column.
+# exr LAST: the header of an image with LAST as the number of the last row and column.
 exr()
 {
     window='\0box2i\0\20\0\0\0\0\0\0\0\0\0\0\0'$1$1 channel='\0\2\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0'
@@ -258,7 +260,7 @@ cat "$dir"/views/0000-*.png >"$s/images/5.png"
 spoil cut images/5.png
 enc "images/5.png: damaged image: the file ends early"
 
-# Poses that are not as many as what they are of.
+# More images, cameras or frames than there are poses.
 extra() # KIND FROM TO TEXT
 {
     grep -q "^$1 " "$dir/list" || return
@@ -272,7 +274,7 @@ extra neu3d cam01 cam99 "poses_bounds.npy: 9 poses, but there are 10 folders of 
 extra neu3d-videos cam01.mp4 cam99.mp4 "poses_bounds.npy: 9 poses, but there are 10 videos"
 extra neu3d cam01/images/0001.ppm cam01/images/0009.ppm "cam00 has 4 frames, but cam01 has 5"
 
-# A path through a file; the scene itself as what it is not.
+# A path through a file; the scene itself missing or damaged.
 take dnerf
 what="dnerf: a path through a file"
 sed 's#"1.ppm"#"0.ppm/1.ppm"#' "$kinds/dnerf/transforms_train.json" >"$s/transforms_train.json"
@@ -294,7 +296,7 @@ scene=$dir/none
 mkdir "$scene"
 both "none: not a scene"
 
-# As published, without the poses of its pictures.
+# The published data set: its COLMAP model has no poses of the images.
 if [ -n "$ADCGS_DATA" ] && [ -d "$ADCGS_DATA/llff_fern" ]; then
     what="llff_fern as COLMAP"
     refused "images.bin: no such file; a COLMAP model has" adcgs-eval "$dir/good.adcgs" "$ADCGS_DATA/llff_fern" --dataset colmap

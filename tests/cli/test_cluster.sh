@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# doc/cluster.md: each script in it is run as it stands, on a small scene, by GNU parallel over hosts that an ssh of ours pretends,
-# and with ADCGS_FULL=1 by a Slurm of one machine, which is started here, and by mpirun. All make the same files. Those about
-# segments are run where adcgs-join is.
+# Runs each script of doc/cluster.md unchanged, on a small scene: with GNU parallel over hosts simulated by a stand-in for ssh;
+# with ADCGS_FULL=1 also with Slurm on one machine, started here, and with mpirun. All of them make the same files. The scripts
+# for segments run if adcgs-join is built.
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-sweep adcgs-enc adcgs-eval adcgs-info adcgs-demo-scene
@@ -14,8 +14,8 @@ fail()
     exit 1
 }
 
-# The programs as they are installed: in one folder that is on the path. The encoder is told first to be quick about it, keeps a list
-# of its calls, and does not begin while there is a file "wait".
+# The programs as installed: in one folder on the path. A wrapper gives the encoder options for a short run, records its calls,
+# and waits while a file "wait" exists.
 mkdir "$dir/bin" "$dir/work" || exit 99
 cp ./adcgs-sweep "$dir/bin/"
 for tool in adcgs-eval adcgs-info adcgs-join; do
@@ -32,7 +32,7 @@ case " \$* " in
 esac
 exec "$build/adcgs-enc" "\${quick[@]}" "\$@"
 END
-# ssh HOST COMMAND...: as on another machine, in no folder of ours and with no variables of ours.
+# ssh HOST COMMAND...: as on another machine, with another working folder and without the test's variables.
 cat >"$dir/bin/ssh" <<END
 #!/bin/bash
 while [ "\${1#-}" != "\$1" ]; do [[ \$1 = -[lopiFS] ]] && shift; shift; done
@@ -47,7 +47,7 @@ cd "$dir/work" || exit 99
 "$build/adcgs-demo-scene" --scene tiny --size 32x32 --format ppm -o my-scene >/dev/null 2>&1 || fail "adcgs-demo-scene"
 ln -s my-scene my-clip
 
-# obey NAME: the script of that name, run by a shell of its own; it may fail where it is said to.
+# obey NAME: run the script of that name in its own shell; the test ends if it fails.
 obey()
 {
     : >"$dir/calls"
@@ -55,13 +55,13 @@ obey()
     [ -s "$dir/$1.sh" ] || fail "$text has no script $1"
     sh -e "$dir/$1.sh" >"$dir/$1.out" 2>&1 || fail "$1: $? $(tail -n 20 "$dir/$1.out" *.log runs/*.log)"
 }
-# first_of FILE NAME: the same as the file that the first of the scripts made, or this is the first.
+# first_of FILE NAME: FILE equals the file of the first script; the first call stores it.
 first_of()
 {
     [ -e "$dir/first-$2" ] || cp "$1" "$dir/first-$2"
-    cmp "$1" "$dir/first-$2" || fail "another $2"
+    cmp "$1" "$dir/first-$2" || fail "$2 differs from the first one"
 }
-# table: of three points, but for times.
+# table: the table of three points, without the times, equals the first one.
 table()
 {
     cut -d, -f 1-12,15- runs/sweep.csv >"$dir/table"
@@ -69,14 +69,14 @@ table()
     first_of "$dir/table" table
     rm -r runs runs.txt
 }
-# swept NAME: by a call of the encoder for each run.
+# swept NAME: the script runs, with one call of the encoder for each run.
 swept()
 {
     obey "$1-sweep"
     [ "$(grep -c -e '--output runs/' "$dir/calls")" -eq 3 ] || fail "$1: expected three runs: $(cat "$dir/calls")"
     table
 }
-# segments NAME: each learnt once, in several chains.
+# segments NAME: the script runs; each segment is trained once, in several chains.
 segments()
 {
     [ -x "$build/adcgs-join" ] || { echo "skipped: $1-segments: no adcgs-join yet"; return; }
@@ -114,7 +114,7 @@ fi
 
 # ---- Slurm ----
 
-# await COMMAND...: until it succeeds, a minute at most.
+# await COMMAND...: repeat until it succeeds, for at most a minute.
 await()
 {
     local try
@@ -122,9 +122,9 @@ await()
         ! "$@" || return 0
         sleep 0.2
     done
-    fail "in vain: $*"
+    fail "did not succeed within a minute: $*"
 }
-# A cluster of this machine alone, with a key, a folder and ports of its own, as whoever runs the test.
+# A cluster of this machine alone, with its own key, folder and ports, under the user of the test.
 configure_slurm()
 {
     host=$(uname -n)
@@ -163,7 +163,7 @@ PartitionName=all Nodes=$host Default=YES State=UP
 END
     export SLURM_CONF=$dir/slurm/slurm.conf
 }
-# 0 when the machine takes jobs. The programs are stopped at the end, by their numbers.
+# Succeeds when the machine accepts jobs. The daemons are stopped at the end by their process ids.
 start_slurm()
 {
     configure_slurm
@@ -177,7 +177,7 @@ start_slurm()
     daemons="$! $daemons"
     (await is_idle >/dev/null)
 }
-# Jobs first: what runs of them would stay.
+# Jobs first: their processes would not end otherwise.
 stop_slurm()
 {
     rm -f "$dir/wait"
@@ -190,8 +190,8 @@ is_idle() { sinfo -h -o %T 2>/dev/null | grep -q idle; }
 first_task() { squeue -h -r -t R -o %i | grep '_1$'; }
 is_listed() { first_task >/dev/null; }
 waits() { squeue -h -r -j "$1" -o %r | grep -q BeginTime; }
-# A task that is put back in the queue while it runs goes on by itself, and is not done twice. Slurm has it wait two minutes; we say
-# seconds, not none: what was put back and what starts in one and the same second look to it as one, "credential revoked".
+# A task that is requeued while it runs resumes by itself, and is not run twice. Slurm delays it for two minutes; the test sets
+# three seconds. Without a delay Slurm confuses a task that is requeued and started in the same second ("credential revoked").
 requeued()
 {
     touch "$dir/wait"
@@ -206,8 +206,8 @@ requeued()
     scontrol update "jobid=$job" StartTime=now+3
     wait $script || exit 1
     [ "$(grep -c 'lambda-0.02.adcgs --check' "$dir/calls")" -eq 2 ] && [ "$(wc -l <"$dir/calls")" -eq 4 ] ||
-        fail "a task that was put back: $(cat "$dir/calls" runs/slurm-1.log)"
-    grep -q 'REQUEUE' runs/slurm-1.log || fail "nothing was put back: $(cat runs/slurm-1.log)"
+        fail "a requeued task: $(cat "$dir/calls" runs/slurm-1.log)"
+    grep -q 'REQUEUE' runs/slurm-1.log || fail "nothing was requeued: $(cat runs/slurm-1.log)"
     table
 }
 for tool in munged slurmctld slurmd sbatch; do

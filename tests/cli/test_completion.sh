@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The shell completes options, their values, settings and files, from the tables that the programs print.
+# The shells complete options, their values, settings and files, from the tables that the programs print.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-dec adcgs-info
 functions=$(cd "${srcdir:-.}" && pwd)/share
@@ -13,7 +13,7 @@ mkdir folder
 : >'film two.adcgs'
 : >notes.txt
 
-# offered LINE: what the function offers for a line with the cursor at its end, in words as bash makes them: cut at = and :, too.
+# offered LINE: the completions for a line with the cursor at its end. Words are split as bash splits them, also at = and :.
 offered()
 {
     COMP_LINE=$1 COMP_POINT=${#1}
@@ -48,12 +48,12 @@ wants "adcgs-enc scene --set=lambda=0.1,rdo" "0.1,rdo_strength="
 wants "adcgs-enc scene --set lambda=" ""
 case $(offered "adcgs-enc --") in
     *--bf16*--help*--preset*--quiet*--set*--version*) ;;
-    *) bad "not all options: $(offered "adcgs-enc --")" ;;
+    *) bad "options are missing: $(offered "adcgs-enc --")" ;;
 esac
-# The parts of a word that bash cuts at ':' as well.
+# Also a part of a word that bash splits at ':'.
 wants "adcgs-dec http://host/n" ""
 
-# Each program prints its whole table: the options of its help, all of them.
+# Each program prints its complete table, with all options of its help.
 cd "$here" || exit 99
 for program in adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join adcgs-share \
     adcgs-sweep; do
@@ -61,16 +61,16 @@ for program in adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adc
     "./$program" --completion | cut -f 1 | grep -v '^-$' | sort -u >"$dir/table"
     "./$program" --help | grep -o -E '^ +(-[a-zA-Z], )?--[a-z0-9-]+' | grep -o -E -e '--.*' | sort -u >"$dir/help"
     cmp "$dir/table" "$dir/help" || bad "$program: table and help differ"
-    [ "$("./$program" --completion | awk -F '\t' 'NF != 6' | wc -l)" -eq 0 ] || bad "$program: rows of other than six columns"
+    [ "$("./$program" --completion | awk -F '\t' 'NF != 6' | wc -l)" -eq 0 ] || bad "$program: a row does not have six columns"
     sed -n '/^complete /,$p' "$script" | grep -q " $program\( \|$\)" || bad "$program is not completed"
     sed 1q "$functions/_adcgs" | grep -q "^#compdef.* $program\( \|$\)" || bad "zsh does not complete $program"
 done
-# Every setting that --set list tells.
+# Every setting of --set list.
 ./adcgs-enc --set list | sed -n 's/^  *\([a-z][a-z0-9_]*\)  *[0-9].*/\1/p' | sort >"$dir/listed"
 ./adcgs-enc --completion | awk -F '\t' '$1 == "--set" { print $5 }' | tr ' ' '\n' | sort >"$dir/offered"
 [ -s "$dir/listed" ] && [ "$(comm -23 "$dir/listed" "$dir/offered")" = "" ] || bad "settings: $(comm -3 "$dir/listed" "$dir/offered")"
 
-# The same in zsh, of a terminal that is none.
+# The same in zsh, on a pseudo-terminal.
 if command -v zsh >/dev/null; then
     cat >"$dir/wanted" <<'END'
 --frametimes|adcgs-dec film.adcgs --fr
@@ -89,11 +89,11 @@ lambda|adcgs-enc scene --set lamb
 rdo_strength|adcgs-enc scene --set lambda=0.1,rdo
 rdo_strength|adcgs-enc scene --set=lambda=0.1,rdo
 END
-    rm "$dir/film two.adcgs" # zsh would quote it
+    rm "$dir/film two.adcgs" # zsh would quote this name
     mapfile -t lines < <(sed 's/.*|//' "$dir/wanted")
     (cd "$dir" && HOME=$dir PATH=$here:$PATH timeout 120 zsh -f "$functions/../tests/cli/offers.zsh" "$functions" "${lines[@]}") \
         >"$dir/offered"
-    paste -d '|' "$dir/offered" <(printf '%s\n' "${lines[@]}") | diff "$dir/wanted" - || bad "what zsh offers"
+    paste -d '|' "$dir/offered" <(printf '%s\n' "${lines[@]}") | diff "$dir/wanted" - || bad "wrong completions in zsh"
 else
     echo "skipped: zsh is not installed"
 fi
@@ -105,6 +105,6 @@ if [ -f Makefile ]; then
     cmp "$script" "$(find "$dir/to" -name adcgs-dec)" || bad "adcgs-dec's completion"
     cmp "$functions/_adcgs" "$(find "$dir/to" -path '*/zsh/site-functions/_adcgs')" || bad "zsh's functions"
     ${MAKE:-make} uninstall-hook uninstall-dist_zshDATA uninstall-dist_completionsDATA DESTDIR="$dir/to" >"$dir/log" 2>&1 || { bad uninstall; cat "$dir/log"; }
-    [ -z "$(find "$dir/to" -name '*adcgs*' ! -type d)" ] || bad "left behind: $(find "$dir/to" -name '*adcgs*')"
+    [ -z "$(find "$dir/to" -name '*adcgs*' ! -type d)" ] || bad "other files remain: $(find "$dir/to" -name '*adcgs*')"
 fi
 exit $failed

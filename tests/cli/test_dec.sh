@@ -9,7 +9,7 @@ tiny_stream 30
 s=$dir/s.adcgs
 dec=./adcgs-dec
 
-# Frames are the same whatever they come out as and whatever computes them.
+# Frames are the same in every output and with all kernels and thread counts.
 expect 0 "frame" $dec "$s" --md5
 cp "$dir/out" "$dir/md5"
 n=$(wc -l <"$dir/md5")
@@ -28,7 +28,7 @@ expect 1 "$whole" $dec "$s" --verify 00112233445566778899aabbccddeeff --quiet
 expect 2 "32 hex" $dec "$s" --verify 123
 
 expect 0 "" $dec "$s" --md5 --quiet --time 0:2
-[ ! -s "$dir/err" ] || { bad "--quiet is not quiet"; cat "$dir/err"; }
+[ ! -s "$dir/err" ] || { bad "--quiet prints messages"; cat "$dir/err"; }
 expect 3 "nowhere" $dec -q "$dir/nowhere" --md5
 
 # Outputs.
@@ -48,20 +48,20 @@ expect 2 "exclude" $dec "$s" -o "$dir/x.exr" --half --float
 expect 2 "output" $dec "$s" --float
 expect 3 "x.ppm" $dec "$s" -o "$dir/no/x.ppm" --time 0
 expect 5 "foo" $dec "$s" -o "$dir/x.foo" --time 0
-# SDL is the player's alone (see test_play.sh): frames are made without it.
+# Only the player needs SDL (see test_play.sh); frames are rendered without it.
 if [ -f .libs/adcgs_play.so ]; then
-    ! readelf -d adcgs-dec .libs/adcgs_oiio.so 2>/dev/null | grep -q 'NEEDED.*SDL' || bad "adcgs-dec loads SDL at once"
-    readelf -d .libs/adcgs_play.so | grep -q 'NEEDED.*SDL' || bad "the player's module does not load SDL"
+    ! readelf -d adcgs-dec .libs/adcgs_oiio.so 2>/dev/null | grep -q 'NEEDED.*SDL' || bad "adcgs-dec links SDL"
+    readelf -d .libs/adcgs_play.so | grep -q 'NEEDED.*SDL' || bad "the player's module does not link SDL"
 fi
-# OpenImageIO is opened when an image needs it, and not before. A build without shared libraries has it inside.
-# PNG and JPEG need no module; what does says which, and that what is there is none.
+# OpenImageIO is loaded only when an image needs it. A build without shared libraries contains it.
+# PNG and JPEG need no module. A format that needs one names the module if it is missing or not a module.
 mkdir "$dir/none"
 for extension in png jpg exr ppm; do
     expect 0 "frame" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/g.$extension" --time 0
     [ -s "$dir/g.$extension" ] || bad "$extension"
 done
 if [ -f .libs/adcgs_oiio.so ]; then
-    ! readelf -d adcgs-dec 2>/dev/null | grep -q 'NEEDED.*\(libpng\|OpenImageIO\|stdc++\)' || bad "adcgs-dec loads OpenImageIO at once"
+    ! readelf -d adcgs-dec 2>/dev/null | grep -q 'NEEDED.*\(libpng\|OpenImageIO\|stdc++\)' || bad "adcgs-dec links OpenImageIO"
     expect 0 "frame" $dec "$s" -o "$dir/g.tif" --time 0
     [ -s "$dir/g.tif" ] || bad "TIFF"
     expect 5 "x.tif: images need OpenImageIO: no adcgs_oiio.so in $dir/none" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.tif" --time 0
@@ -69,7 +69,7 @@ if [ -f .libs/adcgs_oiio.so ]; then
     expect 5 "x.tif: images need OpenImageIO: " env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.tif" --time 0
     expect 0 "frame" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/v.y4m"
 fi
-# Videos likewise, by FFmpeg.
+# The same for videos and FFmpeg.
 expect 2 "standard output takes y4m" $dec "$s" -o - --format mp4
 expect 2 "must end in .mp4" $dec "$s" -o "$dir/x.mkv" --format mp4
 expect 2 "float" $dec "$s" -o "$dir/x.mp4" --float
@@ -81,7 +81,7 @@ if grep -q "define HAVE_FFMPEG" config.h; then
         expect 0 "frame" $dec "$s" -o "$dir/c.$ext"
         [ -s "$dir/c.$ext" ] || bad "no $ext"
     done
-    dd if="$dir/c.mp4" bs=1 skip=4 count=4 2>/dev/null | grep -q ftyp || bad "c.mp4 is no MP4"
+    dd if="$dir/c.mp4" bs=1 skip=4 count=4 2>/dev/null | grep -q ftyp || bad "c.mp4 is not an MP4 file"
     cp "$dir/c.mp4" "$dir/again.mp4"
     expect 0 "frame" $dec "$s" -o "$dir/c.mp4" --format mp4 --threads 1
     cmp -s "$dir/c.mp4" "$dir/again.mp4" || bad "the same frames give another video"
@@ -97,41 +97,42 @@ if grep -q "define HAVE_FFMPEG" config.h; then
     expect 3 "x.mp4" $dec "$s" -o "$dir/no/x.mp4" --time 0
     expect 5 ".webm or .avi" $dec "$s" -o "$dir/x.mpg" --time 0
     if [ -f .libs/adcgs_video.so ]; then
-        ! readelf -d adcgs-dec 2>/dev/null | grep -q 'NEEDED.*libav' || bad "adcgs-dec loads FFmpeg at once"
+        ! readelf -d adcgs-dec 2>/dev/null | grep -q 'NEEDED.*libav' || bad "adcgs-dec links FFmpeg"
         expect 5 "x.mp4: videos need FFmpeg: no adcgs_video.so in $dir/none" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.mp4"
     fi
 else
     expect 5 "x.mp4: videos need FFmpeg" $dec "$s" -o "$dir/x.mp4"
 fi
-[ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || bad "something was left behind"
+[ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || bad "temporary or partial files remain"
 
 # Cameras and times.
 expect 0 "frame" $dec "$s" --camera 1 --md5 --time 0
 cp "$dir/out" "$dir/first"
 expect 0 "frame" $dec "$s" --camera 0 --md5 --time 0
-cmp -s "$dir/out" "$dir/first" && bad "two cameras see the same"
+cmp -s "$dir/out" "$dir/first" && bad "two cameras give the same frame"
 expect 2 "neither" $dec "$s" --camera nobody --md5
 expect 2 "seconds" $dec "$s" --time 2:1 --md5
 expect 2 "WIDTHxHEIGHT" $dec "$s" --size 0x10 --md5
 expect 2 "frames requested" $dec "$s" --time 0:1e9 --md5
 expect 2 "no output: give -o" $dec "$s"
 expect 2 "no output: give -o" $dec "$s" --camera orbit --size 64x48
-# Times that the stream has not: none is a mistake, some are worth a word.
+# Times outside the stream: only such times are an error, some of them cause a warning.
 expect 2 "time 99: the stream lasts from 0 to" $dec "$s" --time 99 --md5
 expect 2 "time 9 and later: the stream lasts" $dec "$s" --time 9:10 --md5
 expect 2 "time -9: the stream lasts" $dec "$s" --time=-9 --md5
 expect 2 "time 99: the stream lasts" $dec "$s" --time 99 --splats "$dir/x.ply"
 expect 0 "[1-9][0-9]* of 61 frames show its first or last frame: the stream lasts from 0" $dec "$s" --time 0:2 --md5
-[ "$(wc -l <"$dir/out")" -eq 61 ] || bad "frames behind the end"
+[ "$(wc -l <"$dir/out")" -eq 61 ] || bad "number of frames beyond the end"
 expect 0 "" $dec "$s" --md5
 ! grep -q "last frame" "$dir/err" || bad "a word of times for a whole stream"
 
-# Frames of another shape: pixels keep theirs. With --fit all of the picture is in the middle, with --fill its middle is all.
+# Frames of another aspect ratio; pixels stay square. With --fit the whole image is in the middle, with --fill its middle fills
+# the frame.
 $dec "$s" --camera 0 --time 0 -o "$dir/whole.ppm" 2>/dev/null
 for way in "96x64 --fit" "96x64" "64x100 --fit" "64x32 --fill" "32x64 --fill"; do
     # shellcheck disable=SC2086
     expect 0 "frame" $dec "$s" --camera 0 --time 0 -o "$dir/other.ppm" --size $way
-    python3 - "$dir/whole.ppm" "$dir/other.ppm" <<'END' || bad "--size $way shows something else"
+    python3 - "$dir/whole.ppm" "$dir/other.ppm" <<'END' || bad "--size $way: wrong pixels"
 import sys
 def read(path):
     _, size, _, data = open(path, "rb").read().split(b"\n", 3)
@@ -139,7 +140,7 @@ def read(path):
     return w, h, [[data[3 * (y * w + x):3 * (y * w + x) + 3] for x in range(w)] for y in range(h)]
 (w, h, a), (v, g, b) = map(read, sys.argv[1:])
 cut_x, cut_y, off_x, off_y = max(w - v, 0) // 2, max(h - g, 0) // 2, max(v - w, 0) // 2, max(g - h, 0) // 2
-wrong = sum(max(abs(p - q) for p, q in zip(a[y + cut_y][x + cut_x], b[y + off_y][x + off_x])) > 8  # splats beyond the edge are clamped
+wrong = sum(max(abs(p - q) for p, q in zip(a[y + cut_y][x + cut_x], b[y + off_y][x + off_x])) > 8  # clamped splats outside
             for y in range(min(h, g)) for x in range(min(w, v)))
 sys.exit(wrong > 10 or len({q for row in b for q in row}) < 50)
 END
@@ -162,7 +163,7 @@ echo "{\"fl_x\":1e9,\"frames\":[{\"transform_matrix\":$pose}]}" >"$dir/path.json
 expect 4 'camera "frame 0": focal lengths 1e+09' $dec "$s" --camera "$dir/path.json" --md5
 expect 3 "nowhere.json" $dec "$s" --camera "$dir/nowhere.json" --md5
 
-# Bad input. A valid stream may store a camera that no frame can be drawn through.
+# Bad input. A valid stream may contain a camera that cannot be rendered.
 expect 4 'camera ".*": focal' $dec "${srcdir:-.}/conformance/vectors/good-sys-cams-extremes.adcgs" --md5
 expect 2 "FILE" $dec
 expect 2 "too many" $dec "$s" "$s"
@@ -206,7 +207,7 @@ frame 2 1e-3 refused
 splats 0.03 MD5
 frame 0 0 MD5
 END
-cmp -s "$dir/shape" "$dir/wanted" || { bad "answers are"; cat "$dir/answers"; }
+cmp -s "$dir/shape" "$dir/wanted" || { bad "wrong answers"; cat "$dir/answers"; }
 expect 0 "" $dec "$s" --answer "$dir/requests" --cpu scalar
 cmp -s "$dir/out" "$dir/answers" || bad "answers differ with --cpu scalar"
 { printf '\357\273\277' && sed 1,2d "$dir/requests"; } >"$dir/marked"
@@ -217,7 +218,7 @@ grep -qx "trace $(wc -l <"$dir/trace") $(md5sum <"$dir/trace" | cut -c1-32)" "$d
 $dec "$s" --camera 0 --time 0 -o - --format raw --float >"$dir/raw" 2>/dev/null
 md5sum <"$dir/raw" | cut -c1-32 >"$dir/whole"
 $dec "$s" --camera 0 --time 0 --md5 2>/dev/null | cmp -s - "$dir/whole" || bad "a frame's digest is not that of its samples"
-# REQ-CONF-012: numbers that are none, cameras that are not there, words too many or too few.
+# REQ-CONF-012: invalid numbers, cameras that do not exist, too many or too few words.
 numbers="1 1 0 0 1 1 0 0 0 0 1 0 0 0 0 1 0"
 for line in frame "frame 0 0" "splats now" "splats 0 0" "layers 6" "layers 0" "layers 01" "camera 1 1" "render 0 0" "Model" \
     "camera 1.5 1 $numbers" "camera 1e0 1 $numbers" "camera 2147483648 1 $numbers" "camera 1 1 nan ${numbers#1 }" \
@@ -229,7 +230,7 @@ for word in 00 +1 0x10 1. .5 1e 1e+ --1 nan inf -inf 1e999 1,5 1f - 01.5 1_0 \
     1111111111111111111111111111111111111111111111111111111111111111; do
     printf 'model\nsplats %s\n' "$word" >"$dir/requests"
     expect 2 "line 2" $dec "$s" --answer "$dir/requests"
-    [ -s "$dir/out" ] && bad "an answer besides the mistake $word"
+    [ -s "$dir/out" ] && bad "an answer in spite of the error $word"
 done
 for index in 00 +0 -0 0.0 -1 1 4294967296; do
     printf 'camera 1 1 %s\nframe %s 0\n' "$numbers" "$index" >"$dir/requests"
@@ -241,8 +242,9 @@ printf 'layers 2\nlayers 2\n' >"$dir/requests"
 expect 2 "line 2" $dec "$s" --answer "$dir/requests"
 printf ' \tmodel\r\n\n  # x\nlayers 5\nsplats -2.50E-01\r\nsplats 1e-400\nsplats -0\ncomplete\ncomplete' >"$dir/requests"
 expect 0 "" $dec "$s" --answer "$dir/requests"
-[ "$(cut -d ' ' -f 1,2 "$dir/out" | tr '\n' ,)" = "model 0,splats -2.50E-01,splats 1e-400,splats -0," ] || bad "answers to odd forms"
-# REQ-CONF-015: a mistake in the requests counts before a stream that is not there or at fault, an unreadable file of requests before all.
+[ "$(cut -d ' ' -f 1,2 "$dir/out" | tr '\n' ,)" = "model 0,splats -2.50E-01,splats 1e-400,splats -0," ] || bad "unusual forms"
+# REQ-CONF-015: an error in the requests has precedence over a missing or damaged stream, an unreadable file of requests over
+# both.
 echo nothing >"$dir/requests"
 expect 2 "line 1" $dec "$dir/nowhere" --answer "$dir/requests"
 expect 2 "line 1" $dec "$dir/f000.ppm" --answer "$dir/requests"
@@ -251,13 +253,13 @@ echo model >"$dir/requests"
 expect 3 "nowhere" $dec "$dir/nowhere" --answer "$dir/requests"
 [ -s "$dir/out" ] && bad "an answer without a stream"
 expect 2 "only" $dec "$s" --answer "$dir/requests" --md5
-# faults CODE CLASS FILE: the class stands alone on standard output and ends standard error.
+# faults CODE CLASS FILE: the class is the only output, and the end of standard error.
 faults()
 {
     $dec "$3" --answer "$dir/requests" >"$dir/out" 2>"$dir/err"
-    [ $? -eq "$1" ] || bad "not exit code $1: a fault of class $2"
-    [ "$(cat "$dir/out")" = "fault $2" ] || bad "no \"fault $2\" on standard output"
-    tail -n 1 "$dir/err" | grep -q "$2\$" || bad "no \"$2\" at the end of standard error"
+    [ $? -eq "$1" ] || bad "fault of class $2: expected exit code $1"
+    [ "$(cat "$dir/out")" = "fault $2" ] || bad "expected \"fault $2\" on standard output"
+    tail -n 1 "$dir/err" | grep -q "$2\$" || bad "expected \"$2\" at the end of standard error"
 }
 echo model >"$dir/requests"
 head -c 100 "$s" >"$dir/cut"
@@ -282,18 +284,18 @@ grep -q '^mean of .* dB' "$dir/out" || bad "no mean"
 expect 0 "" ./adcgs-eval "$s" "$dir/scene" --split train --layers 1 --json --images "$dir/views"
 grep -q '"frames_per_second"' "$dir/out" || bad "no speed in the JSON report"
 
-# The part of the pictures in a box. One round the cameras covers all, one far above them nothing.
+# Quality inside a box. A box around the cameras contains everything, one far above them nothing.
 # mean JSON KEY: the last value of a key, which is the mean.
 mean() { grep -o "\"$2\": *[^,}]*" "$1" | tail -n 1 | sed 's/.*: *//'; }
 expect 0 "" ./adcgs-eval "$s" "$dir/scene" --json --crop -99,-99,-99,99,99,99
-[ "$(mean "$dir/out" crop_psnr)" = "$(mean "$dir/out" psnr)" ] || { bad "a box round everything has another PSNR"; cat "$dir/out"; }
-[ "$(mean "$dir/out" crop_ssim)" = "$(mean "$dir/out" ssim)" ] || bad "a box round everything has another SSIM"
+[ "$(mean "$dir/out" crop_psnr)" = "$(mean "$dir/out" psnr)" ] || { bad "box around everything: other PSNR"; cat "$dir/out"; }
+[ "$(mean "$dir/out" crop_ssim)" = "$(mean "$dir/out" ssim)" ] || bad "box around everything: other SSIM"
 views=$(mean "$dir/out" crop_views)
-[ "$views" -eq "$(grep -c '"name"' "$dir/out")" ] || bad "a box round everything is not in all views"
+[ "$views" -eq "$(grep -c '"name"' "$dir/out")" ] || bad "a box around everything is not in all views"
 expect 0 "" ./adcgs-eval "$s" "$dir/scene" --json --crop=0,0,9e8,1,1,1e9
-[ "$(mean "$dir/out" crop_views)" = 0 ] && [ "$(mean "$dir/out" crop_psnr)" = null ] || bad "a box out of sight is measured"
+[ "$(mean "$dir/out" crop_views)" = 0 ] && [ "$(mean "$dir/out" crop_psnr)" = null ] || bad "figures for an invisible box"
 expect 0 "" ./adcgs-eval "$s" "$dir/scene" --crop 0,0,9e8,1,1,1e9
-grep -q '^no view sees the box$' "$dir/out" || bad "no word of a box out of sight"
+grep -q '^no view sees the box$' "$dir/out" || bad "no message about an invisible box"
 expect 4 "no points" ./adcgs-eval "$s" "$dir/scene" --crop points
 printf '%s\n' ply "format ascii 1.0" "element vertex 2" "property float x" "property float y" "property float z" end_header \
     "-0.2 -0.2 -0.2" "0.2 0.2 0.2" >"$dir/scene/points3d.ply"
@@ -301,7 +303,7 @@ expect 0 "" ./adcgs-eval "$s" "$dir/scene" --crop points
 grep -q "^the box is seen in $views views" "$dir/out" && grep -q '^mean of .* crop .* dB' "$dir/out" || { bad "no mean of the crops"; cat "$dir/out"; }
 cp "$dir/out" "$dir/points"
 expect 0 "" ./adcgs-eval "$s" "$dir/scene" --crop -0.22,-0.22,-0.22,0.22,0.22,0.22
-[ "$(grep crop "$dir/out" | sed 's/.*crop//')" = "$(grep crop "$dir/points" | sed 's/.*crop//')" ] || bad "points make another box"
+[ "$(grep crop "$dir/out" | sed 's/.*crop//')" = "$(grep crop "$dir/points" | sed 's/.*crop//')" ] || bad "points: other box"
 rm "$dir/scene/points3d.ply"
 for box in 1,2,3 0,0,0,1,1,0 0,0,0,1,1,1,1 0,0,0,1,1,x "" point; do
     expect 2 "expected points, or X0" ./adcgs-eval "$s" "$dir/scene" --crop "$box"

@@ -1,7 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# What is installed for desktops: the media type is told by content and by name, the commands of player and thumbnailer work as
-# they are written.
+# Desktop integration: the media type is detected by content and by name, and the commands of the player and the thumbnailer work.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-enc adcgs-demo-scene
 share=${srcdir:-.}/share
@@ -10,11 +9,11 @@ has() { command -v "$1" >/dev/null || { echo "skipped: $2: no $1"; return 1; }; 
 
 if has desktop-file-validate "the desktop file"; then
     expect 0 "" desktop-file-validate "$share/adcgs.desktop"
-    [ ! -s "$dir/out" ] || { bad "desktop-file-validate has something to say"; cat "$dir/out"; }
+    [ ! -s "$dir/out" ] || { bad "desktop-file-validate prints messages"; cat "$dir/out"; }
 fi
 has xmllint "the media type's XML" && expect 0 "" xmllint --noout "$share/adcgs.xml"
 
-# The type, in a database of its own: of a file by its content, whatever it is called; without looking into it by its name.
+# The type, in a separate database: by a file's content, whatever its name; and by its name, without reading it.
 type=$(sed -n 's/.*mime-type type="\([^"]*\)".*/\1/p' "$share/adcgs.xml")
 if has update-mime-database "the media type" && has gio "the media type"; then
     mkdir -p "$dir/data/mime/packages" "$dir/home"
@@ -29,25 +28,25 @@ if has update-mime-database "the media type" && has gio "the media type"; then
     printf 'ADC\r\n' >"$dir/other"
     [ "$(told "$dir/film" content-type)" = "$type" ] || bad "by content: $(told "$dir/film" content-type)"
     [ "$(told "$dir/named.adcgs" fast-content-type)" = "$type" ] || bad "by name: $(told "$dir/named.adcgs" fast-content-type)"
-    [ "$(told "$dir/other" content-type)" != "$type" ] || bad "what is no stream is taken for one"
+    [ "$(told "$dir/other" content-type)" != "$type" ] || bad "a file that is not a stream is detected as one"
 fi
 grep -q "x.adcgs" "${srcdir:-.}/spec/clauses/06-stream.adoc" || bad "the type is not that of the specification"
 for file in adcgs.desktop adcgs.thumbnailer; do
     [ "$(sed -n 's/^MimeType=\(.*\);$/\1/p' "$share/$file")" = "$type" ] || bad "$file is for another type"
 done
 
-# command_of FILE PATTERN: what the file's Exec line gives the program, its fields replaced as sed says.
+# command_of FILE PATTERN: arguments of the program in the file's Exec line; the sed PATTERN replaces its fields.
 command_of() { sed -n 's/^Exec=adcgs-dec//p' "$share/$1" | sed "$2"; }
 
-# A picture, in a file whose name does not say which, of a stream whose name has blanks. Moments are the stream's own.
+# An image whose name does not give its format, from a stream with blanks in its name. Its time is a share of the stream.
 cp "$stream" "$dir/a film.adcgs"
 expect 0 "" sh -c "exec ./adcgs-dec $(command_of adcgs.thumbnailer \
     "s|%i|'$dir/a film.adcgs'|; s|%o|$dir/thumbnail.XYZ|; s|%s|96|g; s|%%|%|g")"
-[ ! -s "$dir/err" ] || { bad "the thumbnailer says something"; cat "$dir/err"; }
+[ ! -s "$dir/err" ] || { bad "the thumbnailer prints messages"; cat "$dir/err"; }
 [ "$(od -A n -t x1 -N 24 "$dir/thumbnail.XYZ" | tr -d ' \n')" = 89504e470d0a1a0a0000000d494844520000006000000060 ] ||
-    bad "the thumbnail is no PNG of 96x96 pixels"
+    bad "the thumbnail is not a PNG of 96x96 pixels"
 
-# A frame by its part of the stream: first, last, and one of those between.
+# A frame by its share of the stream: the first, the last, and one in between.
 tiny_stream 20
 ./adcgs-dec "$dir/s.adcgs" --md5 --quiet >"$dir/all"
 by() { ./adcgs-dec "$1" --time "$2" --md5 --quiet; }
@@ -59,7 +58,7 @@ expect 2 "0% to 100%" ./adcgs-dec "$stream" --time 101% --md5
 expect 2 "0% to 100%" ./adcgs-dec "$stream" --time 5%5 --md5
 expect 2 "takes seconds" ./adcgs-dec "$stream" --time 50% --play
 
-# The player goes on until it is told to leave.
+# The player runs until it receives a signal.
 SDL_VIDEODRIVER=dummy SDL_RENDER_DRIVER=software
 export SDL_VIDEODRIVER SDL_RENDER_DRIVER
 echo quit >"$dir/script"

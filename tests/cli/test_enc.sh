@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc on a tiny scene: the same bytes from the same seed, stopping and going on, logs, stages left out, bad input.
+# adcgs-enc on a tiny scene: the same bytes from the same seed, interrupting and resuming, logs, stages left out, bad input.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-dec adcgs-info adcgs-demo-scene
@@ -15,16 +15,16 @@ enc()
     [ "$got" -eq 0 ] || { bad "exit code $got: adcgs-enc $*"; cat "$dir/$name.err"; }
 }
 
-# same A B WHAT: two streams are the same, byte for byte.
+# same A B WHAT: two streams are equal byte for byte.
 same() { cmp "$dir/$1.adcgs" "$dir/$2.adcgs" || bad "$3"; }
 
-# differ A B WHAT: two streams show something else, whatever their notes say.
+# differ A B WHAT: two streams have different frames, whatever their metadata.
 differ()
 {
     [ "$(./adcgs-dec "$dir/$1.adcgs" --md5 2>/dev/null)" != "$(./adcgs-dec "$dir/$2.adcgs" --md5 2>/dev/null)" ] || bad "$3"
 }
 
-# json FILE: each line is a JSON object; whole FILE: the file is one. Both pass where no tool knows.
+# json FILE: each line is a JSON object; whole FILE: the file is one. Both pass if no tool for JSON is installed.
 json()
 {
     if command -v jq >/dev/null; then
@@ -42,7 +42,7 @@ whole()
     fi
 }
 
-# stop_at ITERATION SIGNAL OPTIONS...: stop a run there.
+# stop_at ITERATION SIGNAL OPTIONS...: interrupt a run at this iteration.
 stop_at()
 {
     from=$1 signal=$2
@@ -54,8 +54,8 @@ stop_at()
 scene=$dir/scene
 tiny_scene "$scene"
 
-# The same bytes at any number of threads, and without test and validation views, which have no part in the stream; reports that
-# parse.
+# The bytes do not depend on the number of threads, or on test and validation views, which are not part of the stream. Reports are
+# valid JSON.
 n=600
 enc one --iterations $n --threads 1 --log "$dir/one.log" --json --quiet
 enc two --iterations $n --threads 2
@@ -65,47 +65,48 @@ rm -r "$dir/apart/test" "$dir/apart/val" "$dir/apart/transforms_test.json" "$dir
 scene=$dir/apart enc seven --iterations $n --threads 7
 same one seven "another stream with seven threads, or without test views"
 rm -r "$dir/apart"
-json "$dir/one.log" || bad "--log is no JSON"
+json "$dir/one.log" || bad "--log is not JSON"
 [ "$(wc -l <"$dir/one.log")" -eq 8 ] || { bad "lines in the log"; cat "$dir/one.log"; }
-whole "$dir/one.out" || bad "--json is no JSON"
-# Before the first iteration nothing is measured; the resolution is known always, also where a run goes on.
-sed 1q "$dir/one.log" | grep '"iteration":0,' | grep -qv -e '"loss"' -e '"psnr"' || bad "the first line of the log tells a loss or a PSNR"
+whole "$dir/one.out" || bad "--json is not JSON"
+# Before the first iteration nothing is measured. The resolution is always known, also in a resumed run.
+sed 1q "$dir/one.log" | grep '"iteration":0,' | grep -qv -e '"loss"' -e '"psnr"' || bad "loss or PSNR in the log's first line"
 [ "$(grep -c '"loss":0\.[0-9]*,"psnr":[1-9]' "$dir/one.log")" -eq 6 ] || { bad "losses in the log"; cat "$dir/one.log"; }
 [ "$(sed -n 's/.*"divide":\([0-9]*\),.*/\1/p' "$dir/one.log" | uniq | xargs)" = "4 2 1" ] || { bad "resolutions"; cat "$dir/one.log"; }
-# The last of them knows what the streams will take: f_g's first chunk is all of layer 1 but its framing.
+# The last log line has the sizes in the stream: the first chunk of f_g is layer 1 except for its framing.
 chunk=$(sed -n 's/.*"f_g1":\([0-9]*\).*/\1/p' "$dir/one.log" | tail -n 1)
 layer=$(sed -n 's/.*"layer1": \([0-9]*\).*/\1/p' "$dir/one.out")
 [ -n "$chunk" ] && [ "$layer" -ge "$chunk" ] && [ "$layer" -le $((chunk + chunk / 100 + 20)) ] ||
     bad "f_g1 of the log is '$chunk', layer 1 of the file has '$layer' bytes"
-# Why the model is as large as it is: the same in the log's last line, in the file and in words.
+# Reasons for the model's size: the same in the last line of the log, in the file and as text.
 most=$(sed -n '$s/.*"stage":"decisions",.*"most":\([0-9]*\),.*/\1/p' "$dir/one.log")
 [ "${most:-0}" -gt 0 ] || { bad "no decisions at the end of the log"; tail -n 1 "$dir/one.log"; }
-./adcgs-info "$dir/one.adcgs" | grep -q "decisions = .*most=$most " || bad "the file tells other decisions than the log"
+./adcgs-info "$dir/one.adcgs" | grep -q "decisions = .*most=$most " || bad "the file has other decisions than the log"
 ./adcgs-info --why "$dir/one.adcgs" >"$dir/why" || bad "--why fails"
 grep -q "^anchors  *300 allowed; [0-9]* to begin with.*; $most at most" "$dir/why" || { bad "--why does not tell the anchors"; cat "$dir/why"; }
-grep -q "\"bytes\": $(wc -c <"$dir/one.adcgs")," "$dir/one.out" || bad "--json tells another size"
-grep -q '"lambda": 0.0[0-9]' "$dir/one.out" || bad "--json does not tell lambda"
+grep -q "\"bytes\": $(wc -c <"$dir/one.adcgs")," "$dir/one.out" || bad "--json has another size"
+grep -q '"lambda": 0.0[0-9]' "$dir/one.out" || bad "--json does not give lambda"
 [ ! -s "$dir/one.err" ] || { bad "messages with --quiet"; cat "$dir/one.err"; }
 [ ! -s "$dir/two.out" ] || bad "standard output without --json"
 ./adcgs-dec "$dir/one.adcgs" --md5 >/dev/null 2>&1 || bad "the stream does not decode"
 
-# An interrupt leaves a checkpoint, says how to go on, and leaves the output alone. Going on gives what never stopping gives.
+# An interrupted run writes a checkpoint, prints how to resume, and leaves the output alone. A resumed run gives the result of an
+# uninterrupted one.
 echo precious >"$dir/stop.adcgs"
 stop_at 100 INT --iterations $n --threads 2
 grep -q -- "--resume $dir/stop.adcgs.checkpoint" "$dir/stop.err" || { bad "no word of --resume"; cat "$dir/stop.err"; }
-[ "$(cat "$dir/stop.adcgs")" = precious ] || bad "an interrupted run touched its output"
+[ "$(cat "$dir/stop.adcgs")" = precious ] || bad "an interrupted run changed its output"
 enc resumed --iterations $n --threads 2 --resume "$dir/stop.adcgs.checkpoint"
 same one resumed "another stream after an interrupt"
 rm "$dir/stop.adcgs.checkpoint"
 stop_at 500 TERM --iterations $n --threads 2 --checkpoint "$dir/late"
-[ ! -e "$dir/stop.adcgs.checkpoint" ] && [ -s "$dir/late" ] || bad "no checkpoint where --checkpoint says"
+[ ! -e "$dir/stop.adcgs.checkpoint" ] && [ -s "$dir/late" ] || bad "no checkpoint at the path of --checkpoint"
 enc threads --iterations $n --threads 5 --resume "$dir/late" --log "$dir/stop.log"
 same one threads "another stream after an interrupt, with other threads"
-json "$dir/stop.log" || bad "the log of both parts is no JSON"
+json "$dir/stop.log" || bad "the log of both parts is not JSON"
 grep -q "\"iteration\":$n," "$dir/stop.log" || bad "the log was not continued"
 grep '"divide":0' "$dir/stop.log" && bad "a log without resolution"
 
-# A checkpoint that cannot be written loses neither the run nor itself: the program says so once, and goes on.
+# If a checkpoint cannot be written, neither the run nor the old checkpoint is lost: the program reports it once, and continues.
 echo older >"$dir/small"
 enc_limited()
 {
@@ -115,10 +116,10 @@ enc_limited()
 }
 expect 0 "small: .*; the run continues, and tries again every 0 s" enc_limited
 [ "$(grep -c "the run continues" "$dir/err")" -eq 1 ] || bad "not said once"
-[ "$(cat "$dir/small")" = older ] || bad "a checkpoint was spoilt"
+[ "$(cat "$dir/small")" = older ] || bad "a checkpoint was damaged"
 same one limited "another stream where no checkpoint could be written"
 
-# A checkpoint goes with its options and its scene, and is checked.
+# A checkpoint belongs to its options and its scene, and is verified.
 short="--preset draft --max-anchors 300 --iterations $n"
 for options in "--seed 2" "--lambda 3" "--k 5" "--max-anchors 299" "--without fine" "--iterations 601" "--scale 2"; do
     # shellcheck disable=SC2086
@@ -138,7 +139,8 @@ expect 4 "$dir/damaged: damaged" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short -
 expect 4 "not a checkpoint" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --resume "$dir/one.adcgs"
 expect 3 "nowhere" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --resume "$dir/nowhere"
 
-# Networks in bf16: another stream, the same at any number of threads, where the CPU can; else one line that says what it lacks.
+# Networks in bf16, if the CPU supports it: another stream, the same at any number of threads. Otherwise one line names the
+# missing feature.
 # shellcheck disable=SC2086
 if ./adcgs-enc "$scene" -o "$dir/bf16.adcgs" $short --iterations 10 --bf16 >"$dir/out" 2>"$dir/err"; then
     enc short0 --iterations 60
@@ -152,7 +154,7 @@ else
     expect 5 "AVX512-BF16" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --bf16
 fi
 
-# Before lambda has a say a run may go on with any: what comes of it is what comes of a whole run. After that it may not.
+# Before lambda has an effect a run may be resumed with any lambda, with the result of a complete run. Later it may not.
 # shellcheck disable=SC2086
 expect 4 "past its beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" $short --resume "$dir/late"
 n=100
@@ -160,7 +162,7 @@ short="--preset draft --max-anchors 300 --iterations $n"
 enc own --iterations $n
 # shellcheck disable=SC2086
 ./adcgs-enc "$scene" --beginning "$dir/begin" $short --lambda 7 >"$dir/out" 2>"$dir/err" || { bad "--beginning"; cat "$dir/err"; }
-[ ! -s "$dir/out" ] && [ ! -s "$dir/err" ] || bad "--beginning says something"
+[ ! -s "$dir/out" ] && [ ! -s "$dir/err" ] || bad "--beginning prints messages"
 enc whole --iterations $n --lambda 0.5
 enc shared --iterations $n --lambda 0.5 --threads 2 --resume "$dir/begin"
 same whole shared "another stream from a shared beginning"
@@ -173,8 +175,8 @@ expect 2 "lambda has no effect" ./adcgs-enc "$scene" --beginning "$dir/x.begin" 
 expect 2 "lambda has no effect" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1,prune_units_at=1
 expect 2 "either -o FILE or --beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" -o "$dir/x.adcgs"
 
-# Stages left out; what a scene does not need is not in its stream.
-# Motion shows after so few iterations if neighbours are free of each other.
+# Stages left out. A stream contains nothing that the scene does not need.
+# After so few iterations motion develops only if anchors are not tied to their neighbours.
 n=60
 free="--set rigid_weight=0,still_below=0"
 networks() { ./adcgs-info "$dir/$1.adcgs" --json | tr -d '\n'; }
@@ -183,7 +185,7 @@ for stage in coarse fine deformation rate densification; do
     ./adcgs-dec "$dir/$stage.adcgs" --md5 >/dev/null 2>&1 || bad "--without $stage does not decode"
 done
 enc all --iterations $n $free --json
-networks all | grep -q 'F_omega.*F_varpi.*"Z"' || bad "a moving scene without motion"
+networks all | grep -q 'F_omega.*F_varpi.*"Z"' || bad "no motion in a dynamic scene"
 networks coarse | grep -q F_omega && bad "--without coarse leaves F_omega in"
 networks fine | grep -q F_varpi && bad "--without fine leaves F_varpi in"
 networks deformation | grep -q 'F_omega\|F_varpi\|"Z"' && bad "--without deformation leaves networks in"
@@ -193,7 +195,7 @@ differ all rate "--without rate changes nothing"
 differ all densification "--without densification changes nothing"
 enc fixed --iterations $n --fixed
 differ all fixed "--fixed changes nothing"
-./adcgs-info "$dir/fixed.adcgs" | grep -q 'settings = .*detail_anchors=0' || bad "--fixed does not say what it means"
+./adcgs-info "$dir/fixed.adcgs" | grep -q 'settings = .*detail_anchors=0' || bad "--fixed is not in the stored settings"
 enc refinement --iterations $n $free --without refinement
 same densification refinement "--without refinement is not --without densification"
 enc steps --iterations $n $free --without weight_steps --json
@@ -203,7 +205,7 @@ enc steps2 --iterations $n $free --without weight_steps --resume "$dir/begin"
 same steps steps2 "the beginning is not that of a run without weight steps"
 enc raw --iterations $n $free --uncompressed "$dir/raw" --json
 grep -q "\"uncompressed_bytes\": $(wc -c <"$dir/raw")," "$dir/raw.out" || { bad "another uncompressed size"; cat "$dir/raw.out"; }
-# field NAME KEY: a whole number of a report.
+# field NAME KEY: an integer of a report.
 field() { sed -n "s/.*\"$2\": \([0-9]*\).*/\1/p" "$dir/$1.out" | head -1; }
 [ "$(field raw uncompressed_bytes)" -gt $((4 * ($(field raw anchors) * 44 + $(field raw primitives) * 8))) ] ||
     bad "the uncompressed model is too small"
@@ -220,44 +222,44 @@ for json in "$dir/still/"*.json; do
     sed 's/"time": *[0-9.e-]*/"time": 0/' "$json" >"$dir/json" && mv "$dir/json" "$json"
 done
 scene=$dir/still enc still --iterations $n
-networks still | grep -q 'F_omega\|F_varpi\|"Z"' && bad "a still scene carries deformation networks"
-./adcgs-dec "$dir/still.adcgs" --md5 >/dev/null 2>&1 || bad "a still scene does not decode"
+networks still | grep -q 'F_omega\|F_varpi\|"Z"' && bad "deformation networks for a static scene"
+./adcgs-dec "$dir/still.adcgs" --md5 >/dev/null 2>&1 || bad "the stream of a static scene does not decode"
 
-# Options mean what settings of their names mean: a budget of anchors below those of the beginning lowers these, too.
+# Options equal the settings of their names. A budget of anchors below the initial number lowers that number, too.
 ./adcgs-enc "$scene" -o "$dir/option.adcgs" --preset draft --max-anchors 90 --k 3 --lambda 2 --iterations 30 >/dev/null 2>&1 || bad "--k"
 ./adcgs-enc "$scene" -o "$dir/set.adcgs" --preset draft --set max_anchors=90,k=3,lambda=2,iterations=30 --log "$dir/set.log" >/dev/null 2>&1
 same option set "--max-anchors, --k, --lambda and --iterations do not mean what settings mean"
 grep '"iteration": *0,' "$dir/set.log" | grep -q '"anchors": *[1-9][0-9]\?,' || { bad "more anchors than the budget"; cat "$dir/set.log"; }
-./adcgs-info "$dir/set.adcgs" | grep -q 'settings.*k=3,start_anchors=90,max_anchors=90' || bad "a stream does not tell its settings"
+./adcgs-info "$dir/set.adcgs" | grep -q 'settings.*k=3,start_anchors=90,max_anchors=90' || bad "no settings in a stream"
 ./adcgs-enc --set list --preset draft >"$dir/list" || bad "--set list"
 grep -q '^  max_anchors  *1200 .*(1 to 1048576)$' "$dir/list" || { bad "another list of settings"; cat "$dir/list"; }
 
-# Why a stream is as large as it is goes with no other answer, and of whose encoder did not say it that is said.
+# --why excludes other reports. For a stream of an encoder that stored no reasons it says so.
 expect 2 "why excludes other" ./adcgs-info --why --json "$dir/one.adcgs"
 expect 2 "why excludes other" ./adcgs-info --why --bytes 20k -o "$dir/x.adcgs" "$dir/one.adcgs"
 ./adcgs-info --why "${srcdir:-.}/conformance/vectors/good-deform-bodies.adcgs" >"$dir/why" || bad "--why of another encoder's stream"
 grep -q "encoder stored no reasons" "$dir/why" || { bad "reasons that nobody gave"; cat "$dir/why"; }
 
-# Moments, cameras and noise of a built-in scene: as many pictures, and in training's alone noise as strong as was asked for.
+# Time steps, cameras and noise of a built-in scene: the number of images, and noise of the given strength in training views only.
 expect 2 "moments" ./adcgs-demo-scene --scene tiny --moments 0 -o "$dir/none"
 expect 2 "cameras" ./adcgs-demo-scene --scene tiny --cameras 1001 -o "$dir/none"
 expect 2 "multiple" ./adcgs-demo-scene --scene tiny --cameras 5 -o "$dir/none"
 expect 2 "noise" ./adcgs-demo-scene --scene tiny --noise 65 -o "$dir/none"
-./adcgs-demo-scene --scene tiny --moments 16 --cameras 9 --format ppm -o "$dir/many" -q || bad "moments and cameras"
-[ "$(find "$dir/many/train" -name '*.ppm' | wc -l)" -eq 48 ] || bad "not three pictures of each of sixteen moments"
+./adcgs-demo-scene --scene tiny --moments 16 --cameras 9 --format ppm -o "$dir/many" -q || bad "--moments and --cameras"
+[ "$(find "$dir/many/train" -name '*.ppm' | wc -l)" -eq 48 ] || bad "not three images of each of sixteen time steps"
 ./adcgs-demo-scene --scene tiny --noise 8 --format ppm -o "$dir/noisy" -q || bad "noise"
 levels() { tail -c 12288 "$1" | od -An -v -tu1 -w1; }
 levels "$scene/train/r_000.ppm" >"$dir/clean.txt"
 levels "$dir/noisy/train/r_000.ppm" | paste "$dir/clean.txt" - |
     awk '{ d = $2 - $1; square += d * d } END { exit !(square / NR > 49 && square / NR < 81) }' || bad "noise of another strength"
-cmp -s "$scene/test/r_000.ppm" "$dir/noisy/test/r_000.ppm" || bad "noise in what is tested on"
+cmp -s "$scene/test/r_000.ppm" "$dir/noisy/test/r_000.ppm" || bad "noise in the test views"
 
-# A scene seen at many moments in which nothing moves: the encoder finds out that motion does not pay.
+# A static scene with many time steps: the encoder detects that motion does not pay.
 ./adcgs-demo-scene --scene still --size 48x48 --format ppm -o "$dir/rest" >/dev/null 2>&1
 scene=$dir/rest enc rest --iterations 2400 --max-anchors 200
-networks rest | grep -q 'F_omega\|F_varpi\|"Z"' && bad "a scene at rest carries deformation networks"
+networks rest | grep -q 'F_omega\|F_varpi\|"Z"' && bad "deformation networks for a motionless scene"
 
-# Wrong use and bad input: one line, the right exit code, nothing written.
+# Wrong usage and bad input: one line, the right exit code, no output.
 try="./adcgs-enc $scene -o $dir/x.adcgs"
 expect 2 "SCENE" ./adcgs-enc -o "$dir/x.adcgs"
 expect 2 "no output" ./adcgs-enc "$scene"
@@ -306,27 +308,27 @@ if [ -w /dev/full ]; then
 fi
 expect 3 "not a regular file" ./adcgs-enc "$scene" -o /dev/null --log "$dir/x.log"
 expect 3 "no/check" $try --checkpoint "$dir/no/check" --log "$dir/x.log"
-[ ! -e "$dir/x.log" ] || bad "a run began whose output cannot be written"
+[ ! -e "$dir/x.log" ] || bad "a run began although its output cannot be written"
 expect 3 "no/raw" $try --uncompressed "$dir/no/raw"
 expect 3 "no/log" $try --log "$dir/no/log"
 
-# Stored cameras: one pose through two lenses is two cameras.
+# Stored cameras: one pose with two lenses is two cameras.
 cp -R "$scene" "$dir/lenses"
 awk '/transform_matrix/ { if (!pose) pose = $0; sub(/,$/, "", pose); sub(/ *},?$/, "", pose)
          printf "%s, \"camera_angle_x\": %s }%s\n", pose, n++ % 2 ? 0.5 : 0.75, /, *$/ ? "," : ""; next } { print }' \
     "$scene/transforms_train.json" >"$dir/lenses/transforms_train.json"
 expect 0 "" ./adcgs-enc "$dir/lenses" -o "$dir/lenses.adcgs" --preset draft --iterations 10 --max-anchors 100 --quiet
-[ ! -s "$dir/err" ] || { bad "--quiet is not quiet"; cat "$dir/err"; }
+[ ! -s "$dir/err" ] || { bad "--quiet prints messages"; cat "$dir/err"; }
 ./adcgs-info "$dir/lenses.adcgs" >"$dir/out"
 [ "$(grep -c '64x64, focal' "$dir/out")" -eq 2 ] || { bad "stored cameras"; cat "$dir/out"; }
 
-# A full disk, pretended by a limit on the size of files: the file that was there stays.
+# A full disk, simulated by a limit on the size of files: the existing file stays.
 cp "$dir/one.adcgs" "$dir/full.adcgs"
 sh -c "trap '' XFSZ; ulimit -f 8; exec ./adcgs-enc '$scene' -o '$dir/full.adcgs' --preset draft --iterations 10 -q" 2>"$dir/err"
 got=$?
 [ $got -eq 3 ] && [ "$(wc -l <"$dir/err")" -eq 2 ] && tail -n 1 "$dir/err" | grep -q "full.adcgs: cannot write" &&
     grep -q "a failure ends the run at iteration 10, and its state is lost: .*full.adcgs.checkpoint" "$dir/err" ||
     { bad "exit code $got of a full disk"; cat "$dir/err"; }
-same one full "a failed write touched the file"
-[ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || { bad "something was left behind"; ls -a "$dir"; }
+same one full "a failed write changed the file"
+[ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || { bad "temporary or partial files remain"; ls -a "$dir"; }
 exit $failed

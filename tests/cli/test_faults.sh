@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Every call by which a program changes files fails once, and then once more with all that follow, as on a full disk: exit code
-# 3, one line that names what could not be written, files that are the old ones or whole new ones, and nothing else left behind.
+# Every system call by which a program changes files fails: in one run it alone, in another one also all later ones, as on a full
+# disk. Then the exit code is 3, one line names the file, files are the old ones or complete new ones, and no other files remain.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-info adcgs-enc adcgs-join adcgs-eval adcgs-sweep adcgs-conform adcgs-demo-scene adcgs-import tests/cli/fail-nth
@@ -11,10 +11,10 @@ tiny_stream 40
 s=$dir/s.adcgs w=$dir/w
 
 ways='once +'
-none=1000000 most=$none # a call that there is not; the last that is tried
+none=1000000 most=$none # number of a call that never occurs; number of the last call to test
 
-# faults NAME COMMAND...: the command writes into $w; what it prints goes to a file there, too. Of its files, those that end in
-# .log grow line by line, and the standard output does so as well; the others are to be whole.
+# faults NAME COMMAND...: the command writes into $w, and its standard output goes to a file there. Standard output and the files
+# whose names end in .log grow line by line. All other files have to be complete.
 faults()
 {
     name=$1
@@ -32,16 +32,16 @@ faults()
             read -r calls <"$dir/report"
             [ "$n" -le "$calls" ] || break
             check_fault "$name, call $n$rest of $calls"
-            n=$((n + 1 + n / 4)) # all of the first ones, then fewer and fewer
+            n=$((n + 1 + n / 4)) # all of the first calls, then ever fewer
             [ "$n" -le "$most" ] || n=$none
         done
-        [ "$calls" -gt 0 ] || bad "$name: nothing is written"
+        [ "$calls" -gt 0 ] || bad "$name: no system call writes"
         [ "$code" -eq 0 ] || { bad "$name: exit code $code without a fault"; cat "$dir/err"; }
     done
 }
 
-# The files that the good run wrote, with other contents, but for those that it reads. spare=yes: not every call matters.
-# rescues=yes: a run that fails saves its state, or says why it cannot.
+# fresh: restore the files that the good run wrote, with other content, except those that the command reads ($kept). spare=yes:
+# some calls do not matter. rescues=yes: a run that fails saves its state, or says why it cannot.
 kept=none spare=no rescues=no
 fresh()
 {
@@ -49,8 +49,8 @@ fresh()
     find "$w" -type f ! -path "$kept" -exec sh -c 'for file; do echo old >"$file"; done' sh {} +
 }
 
-# size_of FILE: its lines if it is text, else its bytes. whole FILE: it is the old one, or as long as that of the good run, in
-# which times may be others.
+# size_of FILE: number of lines of text, else of bytes. whole FILE: it is the old file, or as long as that of the good run; times
+# in it may differ.
 size_of() { case $1 in *.tif | *.sgi | *.state) wc -c <"$1" ;; *) wc -l <"$1" ;; esac; }
 whole()
 {
@@ -59,7 +59,7 @@ whole()
               [ "$(size_of "$w/$1")" = "$(size_of "$dir/good/$1")" ]; }
 }
 
-# check_message NAME: exit code 3, and one line that names the failure.
+# check_message NAME: the exit code is 3, and one line names the failure.
 check_message()
 {
     [ "$code" -eq 3 ] || { bad "$1: exit code $code"; cat "$dir/err"; }
@@ -70,24 +70,25 @@ check_message()
 check_fault()
 {
     if [ "$code" -eq 0 ] && [ $spare = yes ] && diff -r "$w" "$dir/good" >/dev/null; then
-        return # another program's messages, say
+        return # for example the messages of another program
     fi
     if [ "$code" -eq 0 ] && [ $rescues = yes ]; then
-        grep -rqx old "$w" && bad "$1: exit code 0, and a file is the old one"
+        grep -rqx old "$w" && bad "$1: exit code 0, but an old file"
     else
         check_message "$1"
     fi
     [ $rescues = no ] || rm -f "$w/x.adcgs.checkpoint"
     [ "$(cd "$w" && find . ! -name '*.gp.log' | sort)" = "$(cd "$dir/good" && find . ! -name '*.gp.log' | sort)" ] ||
-        { bad "$1: other files than before"; (cd "$w" && find . -name '*tmp*'); }
+        { bad "$1: additional or missing files"; (cd "$w" && find . -name '*tmp*'); }
     (cd "$w" && find . -type f ! -name '*.log') >"$dir/files"
     while read -r file; do
         whole "$file" || { bad "$1: $file is neither the old nor the new one"; ls -l "$w/$file" "$dir/good/$file"; }
     done <"$dir/files"
 }
 
-# imports NAME ARGUMENTS...: of adcgs-import, which is to make the folder $w/s. It appears whole or not at all; from what is left beside
-# it the same command goes on. The last calls are tried, and fewer and fewer before (ADCGS_FULL=1: more of them).
+# imports NAME ARGUMENTS...: adcgs-import makes the folder $w/s. The folder appears complete or not at all. After a failure the
+# same command resumes from the remaining files. The last calls are tested, and ever fewer of the earlier ones (ADCGS_FULL=1:
+# more).
 imports()
 {
     name=$1
@@ -104,19 +105,19 @@ imports()
         tests/cli/fail-nth "$w" "$dir/report" $((calls - back)) "$@" >"$w/stdout.log" 2>"$dir/err"
         code=$?
         [ "$code" -eq 3 ] && [ "$(grep -c 'cannot' "$dir/err")" -eq 1 ] || { bad "$what: exit code $code"; cat "$dir/err"; }
-        [ -e "$w/s" ] || "$@" >"$dir/out" 2>"$dir/err" || { bad "$what: and then"; cat "$dir/err"; }
+        [ -e "$w/s" ] || "$@" >"$dir/out" 2>"$dir/err" || { bad "$what: resuming failed"; cat "$dir/err"; }
         diff -r "$w/s" "$dir/good" >"$dir/out" || { bad "$what: another scene"; cat "$dir/out"; }
-        [ "$(ls "$w")" = "$(printf 's\nstdout.log')" ] || { bad "$what: more is left"; ls "$w"; }
+        [ "$(ls "$w")" = "$(printf 's\nstdout.log')" ] || { bad "$what: other files remain"; ls "$w"; }
         back=$((back + 1 + (back > 1 ? back : 0) ${ADCGS_FULL:+/ 4}))
     done
 }
 
-# The decoder: pictures of each writer, streams, a video, splats, cameras, standard output.
+# The decoder: images of each writer, streams, a video, splats, cameras, standard output.
 for extension in png jpg ppm exr; do
     faults "$extension" ./adcgs-dec "$s" --time 0:0.06 --camera 0 -o "$w/%d.$extension"
 done
 ways=once
-for extension in tif sgi; do # in memory, and by way of a file
+for extension in tif sgi; do # written from memory, and through a file
     if ./adcgs-dec "$s" --time 0 -o "$dir/x.$extension" 2>/dev/null; then
         faults "$extension" ./adcgs-dec "$s" --time 0 --camera 0 --size 40x30 -o "$w/x.$extension"
     fi
@@ -131,21 +132,21 @@ faults "standard output" ./adcgs-dec "$s" --time 0:0.1 -o -
 faults "digests" ./adcgs-dec "$s" --time 0:0.1 --md5
 faults "splats" ./adcgs-dec "$s" --time 0 --splats "$w/x.ply"
 faults "splats as GLB" ./adcgs-dec "$s" --time 0 --splats "$w/x.glb"
-for format in SPZ SOG; do # where the build has them
+for format in SPZ SOG; do # if this build supports the format
     if grep -q "define HAVE_$format" config.h; then
         faults "splats as $format" ./adcgs-dec "$s" --time 0 --splats "$w/x.$(echo $format | tr '[:upper:]' '[:lower:]')"
     fi
 done
 faults "cameras" ./adcgs-dec "$s" --cameras "$w/x.json"
 
-# The player's pictures, of the scene and of its window, at a moment that stands still.
+# The player's images of the scene and of its window, at a fixed time.
 printf 'screenshot %s\ngrab %s\nquit\n' "$w/shot.png" "$w/window.ppm" >"$dir/script"
 mkdir -p "$w"
 if SDL_VIDEODRIVER=dummy ./adcgs-dec "$s" --play --time 0.1 --script "$dir/script" >/dev/null 2>&1; then
     faults "player" env SDL_VIDEODRIVER=dummy ./adcgs-dec "$s" --play --time 0.1 --script "$dir/script" --threads 1
 fi
 
-# What is reported of a stream, and its anchors.
+# Reports about a stream, and its anchors.
 faults "report" ./adcgs-info "$s" --bits
 faults "JSON" ./adcgs-info "$s" --json
 faults "trace" ./adcgs-info "$s" --trace
@@ -154,31 +155,32 @@ if ./adcgs-info "$s" --points "$dir/x.drc" 2>/dev/null; then
     faults "Draco" ./adcgs-info "$s" --points "$w/x.drc"
 fi
 
-# Evaluation: table, pictures, reports.
+# Evaluation: table, images, reports.
 faults "table" ./adcgs-eval "$s" "$dir/scene" --csv "$w/x.csv" --images "$w/views" --beside
 faults "evaluation" ./adcgs-eval "$s" "$dir/scene" --json
 faults "table printed" ./adcgs-eval "$s" "$dir/scene" --csv -
 
-# The encoder: stream, plain numbers; images that go to a file for want of memory, or are decoded again; the beginning of a run.
+# The encoder: stream; plain numbers; images that go to a file or are decoded again since memory is limited; the beginning of a
+# run.
 spare=yes rescues=yes
 faults "encoder" ./adcgs-enc "$dir/scene" -o "$w/x.adcgs" --preset draft --iterations 10 --threads 1 --quiet --memory 1 \
     --uncompressed "$w/x.bin"
 faults "beginning" ./adcgs-enc "$dir/scene" --beginning "$w/x.state" --preset draft --iterations 200 --threads 1 --quiet
 spare=no rescues=no
 
-# Parts, put together.
+# Joining of segments.
 ./adcgs-enc "$dir/scene" --plan "$dir/plan.json" --cut 9 --preset draft --iterations 10 --quiet &&
     ./adcgs-enc "$dir/scene" --plan "$dir/plan.json" --segment 1 --quiet || bad "adcgs-enc --plan"
 faults "join" ./adcgs-join "$dir/plan.json" -o "$w/x.adcgs"
 faults "list of parts" ./adcgs-join "$dir/plan.json" --list
 
-# The built-in scene, conformance's report.
+# The built-in scene, and the report of adcgs-conform.
 ways=+
 faults "scene" ./adcgs-demo-scene --scene tiny -o "$w/scene"
 ways='once +'
 faults "conformance" ./adcgs-conform "$vectors/manifest.json" --filter 'bad-geom-*' --junit "$w/x.xml"
 
-# Footage made a scene: pictures reduced, masks, points; videos taken over. COLMAP's own files lie elsewhere.
+# A scene from footage: reduced images, masks, points. COLMAP's own files are in another folder.
 fake=$(cd "${srcdir:-.}/tests/cli" && pwd)/fake-colmap
 export FAKE="$dir/fake" FAKE_ASIDE="$dir/aside"
 mkdir "$dir/aside" "$dir/views" "$dir/masks"
@@ -188,9 +190,9 @@ for i in 0 1 2; do
 done
 imports "import" "$dir/views" --masks "$dir/masks" --side 64
 
-# A sweep's tables and page, of runs that have been made.
+# Tables and page of a sweep whose runs exist.
 if ./adcgs-sweep "$dir/scene" -o "$dir/sweep" --lambda 0.1 --preset draft --iterations 10 --yardsticks none >/dev/null 2>"$dir/err"; then
-    # The last calls are those of adcgs-eval, which has its own line; here what it says is in its log.
+    # The last calls are those of adcgs-eval, which has its own test; here its messages go to its log.
     kept="$w/sweep/lambda*" spare=yes most=2000
     faults "sweep" sh -c '[ -e "$1/sweep" ] || cp -r "$2" "$1/sweep"; shift 2; exec "$@"' sh "$w" "$dir/sweep" \
         ./adcgs-sweep "$dir/scene" -o "$w/sweep" --lambda 0.1 --preset draft --iterations 10 --yardsticks none --resume

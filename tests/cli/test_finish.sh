@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# A run that is interrupted can be made a file of as it is: from its checkpoint by --finish, and by a second interrupt; neither
-# they nor a third, nor a damaged checkpoint, lose anything. Runs in the build folder.
+# An interrupted run can write a file of its current state: from its checkpoint with --finish, or at a second interrupt. Neither
+# way, nor a third interrupt, nor a damaged checkpoint loses data. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-dec adcgs-eval adcgs-info adcgs-demo-scene
 
@@ -10,7 +10,7 @@ scene=$dir/scene
 tiny_scene "$scene"
 run="./adcgs-enc $scene --preset draft --max-anchors 300 --set stereo=0 --iterations $n"
 
-# shows FILE DB: a file is whole, and shows the test views as well as that.
+# shows FILE DB: a file has no faults, and the PSNR of its test views is at least DB.
 shows()
 {
     expect 0 "" ./adcgs-info --check "$1"
@@ -18,38 +18,38 @@ shows()
     awk -v least="$2" -F '[:,]' '/"psnr"/ { last = $2 } END { exit !(last >= least) }' "$dir/out" || { bad "$1 shows less than $2 dB"; cat "$dir/out"; }
 }
 
-# One interrupt says what a second one would have done, and what can be done now.
+# After one interrupt a message names the effect of a second one, and the options for the checkpoint.
 state=$dir/stop.adcgs.checkpoint
 echo precious >"$dir/stop.adcgs"
 # shellcheck disable=SC2086
 interrupt INT "$dir/stop.log" '"iteration":100,' $run -o "$dir/stop.adcgs" --threads 2 --log "$dir/stop.log"
 grep -q 'a second interrupt makes a file' "$dir/stop.err" || { bad "no word of a second interrupt"; cat "$dir/stop.err"; }
 grep -q -- "--resume $state; or make a file of this state with --finish" "$dir/stop.err" || { bad "no word of --finish"; cat "$dir/stop.err"; }
-[ "$(cat "$dir/stop.adcgs")" = precious ] || bad "one interrupt touched the output"
+[ "$(cat "$dir/stop.adcgs")" = precious ] || bad "one interrupt changed the output"
 cp "$state" "$dir/kept"
 
-# The file is decoded, measured and told like any other; threads do not matter, and the run can still go on.
+# The file is decoded, measured and reported as usual. Threads do not matter, and the run can still be resumed.
 # shellcheck disable=SC2086
 expect 0 'the state after iteration [1-5][0-9]* of 600' $run -o "$dir/stop.adcgs" --threads 2 --finish "$state" --log "$dir/stop.log"
 grep -q 'decoded from the file, 3 test views: 2[0-9]' "$dir/err" || { bad "no report"; cat "$dir/err"; }
-grep -q '"stage":"decisions"' "$dir/stop.log" || bad "the log does not tell its end"
+grep -q '"stage":"decisions"' "$dir/stop.log" || bad "the log has no last line"
 shows "$dir/stop.adcgs" 20
-./adcgs-info "$dir/stop.adcgs" | grep -q 'iterations = [1-5][0-9]*$' || bad "the file does not tell the iterations that it had"
-cmp "$state" "$dir/kept" || bad "a file was made, and the checkpoint is another"
+./adcgs-info "$dir/stop.adcgs" | grep -q 'iterations = [1-5][0-9]*$' || bad "the file does not give its number of iterations"
+cmp "$state" "$dir/kept" || bad "--finish changed the checkpoint"
 if [ -n "${ADCGS_FULL-}" ]; then
     # shellcheck disable=SC2086
     expect 0 "" $run -o "$dir/other.adcgs" --threads 5 --finish "$state" -q
-    cmp "$dir/stop.adcgs" "$dir/other.adcgs" || bad "another file with other threads"
+    cmp "$dir/stop.adcgs" "$dir/other.adcgs" || bad "the file depends on the number of threads"
     # shellcheck disable=SC2086
     interrupt INT "$dir/size.log" '"iteration":100,' $run -o "$dir/size.adcgs" --threads 2 --size 12k --log "$dir/size.log"
     # shellcheck disable=SC2086
     expect 0 "" $run -o "$dir/size.adcgs" --threads 2 --size 12k --finish "$dir/size.adcgs.checkpoint"
-    [ "$(wc -c <"$dir/size.adcgs")" -le 12000 ] || bad "a size was missed"
+    [ "$(wc -c <"$dir/size.adcgs")" -le 12000 ] || bad "the file is larger than --size"
     shows "$dir/size.adcgs" 18
 fi
 
-# begin_twice NAME THREADS: begin a run of that file and log, and interrupt it twice once it is on its way; pid is its process. The
-# two signals cannot become one.
+# begin_twice NAME THREADS: begin a run with this file and log, and interrupt it twice during training; pid is its process. Two
+# different signals are used, since the kernel may merge two equal ones.
 begin_twice()
 {
     rm -f "$dir/$1.log"
@@ -61,7 +61,7 @@ begin_twice()
     kill -TERM $pid
 }
 
-# Two interrupts: the state is saved, and the file is what --finish makes of it.
+# Two interrupts: the state is saved, and the file equals that of --finish.
 for try in 1 2 3; do
     begin_twice two 2
     wait $pid
@@ -74,7 +74,7 @@ shows "$dir/two.adcgs" 20
 expect 0 "" $run -o "$dir/other.adcgs" --threads 2 --finish "$dir/two.adcgs.checkpoint"
 cmp "$dir/two.adcgs" "$dir/other.adcgs" || bad "two interrupts and --finish make different files"
 
-# A third one, while the file is made: it ends the program, and leaves the state and what was there before.
+# A third interrupt while the file is made: it ends the program; the state and the existing output stay.
 if [ -n "${ADCGS_FULL-}" ]; then
     echo precious >"$dir/three.adcgs"
     for try in 1 2 3; do
@@ -87,17 +87,17 @@ if [ -n "${ADCGS_FULL-}" ]; then
         echo precious >"$dir/three.adcgs"
     done 2>/dev/null
     if [ $code -le 1 ]; then
-        echo "skipped: a third interrupt: the file was always there before"
+        echo "skipped: a third interrupt: the file was always complete before it"
     else
         [ $code -eq 143 ] || { bad "exit code $code after three interrupts, expected 143"; cat "$dir/err"; }
-        [ "$(cat "$dir/three.adcgs")" = precious ] || bad "a third interrupt touched the output"
+        [ "$(cat "$dir/three.adcgs")" = precious ] || bad "a third interrupt changed the output"
     fi
-    [ "$(find "$dir" -name 'three.adcgs*' | wc -l)" -eq 2 ] || { bad "left behind"; ls "$dir"; }
+    [ "$(find "$dir" -name 'three.adcgs*' | wc -l)" -eq 2 ] || { bad "other files remain"; ls "$dir"; }
     # shellcheck disable=SC2086
     expect 0 "" $run -o "$dir/three.adcgs" --threads 2 --finish "$dir/three.adcgs.checkpoint"
 fi
 
-# What cannot be made a file of: one line, and the output stays.
+# Invalid input: one line, and the output stays.
 echo precious >"$dir/x.adcgs"
 head -c 3000 "$dir/kept" >"$dir/damaged"
 cp "$dir/kept" "$dir/flipped"
@@ -116,9 +116,9 @@ done
     done
     expect 2 "finish excludes\|either" $run --beginning "$dir/x.adcgs" --finish "$dir/kept"
 }
-[ "$(cat "$dir/x.adcgs")" = precious ] || bad "what failed touched the output"
+[ "$(cat "$dir/x.adcgs")" = precious ] || bad "a failed run changed the output"
 
-# An interrupt is heard while the file is measured, which is complete: 900 views would take some seconds.
+# An interrupt takes effect while the complete file is measured: 900 views would take some seconds.
 many=$dir/many
 cp -r "$scene" "$many"
 awk '/"file_path"/ { on = 1; one = "" }
@@ -140,7 +140,7 @@ done
 [ "$got" -eq 0 ] && [ "$try" -lt 3 ] || { bad "exit code $got of an interrupt while views are measured"; cat "$dir/err"; }
 expect 0 "" ./adcgs-info --check "$dir/many.adcgs"
 
-# In its first stage a run has nothing to save, and says so; a state of its motionless stage is one that shows little.
+# In its first stage a run has no state to save, and says so. A state before motion begins gives a file with a warning.
 ./adcgs-enc "$many" -o "$dir/early.adcgs" -n 20k >"$dir/out" 2>"$dir/err" &
 pid=$!
 sleep 0.3

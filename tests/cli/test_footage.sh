@@ -1,26 +1,27 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc says, before it learns from it, what is wrong with footage: pictures that come twice, are another camera's or are
-# missing, steps of light and of its colour, a clock that is off. Of footage in order, where much moves, comes, goes and is hidden, and quietly, it says nothing.
+# Before training adcgs-enc reports faults of footage: duplicate images, images of another camera, missing images, steps of
+# brightness and colour, a clock that is off. It prints no warning for correct footage with much motion, appearing, disappearing
+# and hidden objects, or with --quiet.
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-demo-scene
 
-# film NAME OPTIONS...: of adcgs-demo-scene. What is learnt from it first is a quarter as large.
+# film NAME OPTIONS...: a scene made with these options of adcgs-demo-scene. Training begins at a quarter of its image size.
 film()
 {
     name=$1
     shift
     ./adcgs-demo-scene --size "${size:-32x32}" --format ppm --threads 2 -o "$dir/$name" -q "$@" || bad "adcgs-demo-scene $*"
 }
-# look NAME: learn next to nothing from it; what the encoder says is in $dir/NAME.err.
+# look NAME: train the scene for a few iterations; the encoder's messages go to $dir/NAME.err.
 look()
 {
     ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --preset draft --set stereo=${moments:-0} -n 10 --threads 2 ${quiet:-} ${even:-} >"$dir/out" \
         2>"$dir/$1.err" ||
         { bad "adcgs-enc of $1"; cat "$dir/$1.err"; }
 }
-# says NAME TEXT: once, and of the others nothing.
+# says NAME TEXT: there is one message with TEXT, and no other warning.
 doubts='check poses and lenses\|disagrees\|has an image between\|has no image between\|doubled frames\|mixed-up files\|times as \|check synchronisation'
 says()
 {
@@ -33,7 +34,7 @@ silent()
     look "$1"
     grep "$doubts" "$dir/$1.err" && bad "doubts of $1"
 }
-# late NAME CAMERA FRAMES: of four cameras' pictures in turn; those that camera took come so many moments too late.
+# late NAME CAMERA FRAMES: delay the images of one of four cameras that take turns by so many frames.
 late()
 {
     awk -v camera="$2" -v frames="$3" '{
@@ -47,7 +48,7 @@ late()
     }' "$dir/$1/transforms_train.json" >"$dir/late.json" && mv "$dir/late.json" "$dir/$1/transforms_train.json"
 }
 
-# The four that each see all moments; and the twelve that take turns.
+# Four cameras that each see all time steps; twelve that take turns.
 for scene in appear blink2 pass turn3; do
     film "$scene" --scene $scene --cameras 4
     silent "$scene"
@@ -59,7 +60,7 @@ done
 
 film twice --scene cross20 --cameras 4 --spoil twice=0.2
 says twice 'ppm: the image at 0.[0-9]* s repeats the previous one, as do 17 others, 4 of this camera: check for doubled frames'
-# Frames that come twice where cameras take turns, and where one moves: 12 and 13, 30 and 31 are the same.
+# Duplicate frames of cameras that take turns, and of one that moves: 12 and 13, 30 and 31 are equal.
 for name in turns hand2; do
     film $name --scene "$([ $name = turns ] && echo cross80 || echo film-cross80)"
     for frame in 012 030; do
@@ -83,13 +84,14 @@ film sync --scene clip --moments 60 --cameras 4
 silent sync
 late sync 1 2
 says sync 'train/r_001.ppm: its camera appears 2 frames later than others: check synchronisation'
-# Poses are off a little, all of them: pictures are matched for it.
+# All poses are slightly off; matching of images detects it.
 size=96x96 moments=2
 film poses --scene cross20
 silent poses
 film pose --scene cross20 --spoil pose=1
 says pose 'pose: matched points of cameras lie 1.[0-9] pixels apart (median): check poses and lenses'
-# Steps that are taken out of the pictures are told once, as such; where there is none that is said, and nothing else is.
+# Steps that are removed from the images are reported once, as removed. Without steps a message says so. There is no other
+# message.
 moments=0
 evened()
 {
@@ -103,17 +105,17 @@ evened step 'the images of all cameras become 0.87 times as bright: this and all
 evened tint 'the images of all cameras become 0.87 times as blue relative to green: this and all other steps of light are evened out'
 evened sync 'sync: even_light: no steps of light found'
 even=
-# Segments are cut of a scene whose light is even: it is told once, and the same.
+# Segments are cut from a scene whose steps are removed already: one report, with the same text.
 ./adcgs-enc "$dir/step" -o "$dir/cut.adcgs" --preset draft --set stereo=0,even_light=1 --segment 0.3 -n 10 --threads 2 2>"$dir/cut.err" ||
-    { bad "segments of even light"; cat "$dir/cut.err"; }
+    { bad "segments with even_light"; cat "$dir/cut.err"; }
 [ "$(grep -c 'steps of light are evened out' "$dir/cut.err")" -eq 1 ] || { bad "not told once of segments"; cat "$dir/cut.err"; }
 grep "check exposure\|check white" "$dir/cut.err" && bad "what was evened before it was cut is a doubt"
-# What is live has no pictures yet.
+# With --live there are no images at the start.
 code=0
 ./adcgs-enc --live "$dir/step" -o "$dir/live.adcgs" --set even_light=1 2>"$dir/live.err" || code=$?
 { [ $code -eq 2 ] && grep -q 'live: even_light needs all images' "$dir/live.err" && [ ! -e "$dir/live.adcgs" ]; } ||
-    { bad "even light of what is live: $code"; cat "$dir/live.err"; }
+    { bad "even_light with --live: $code"; cat "$dir/live.err"; }
 quiet=-q
 look step
-[ ! -s "$dir/step.err" ] || { bad "--quiet is not quiet"; cat "$dir/step.err"; }
+[ ! -s "$dir/step.err" ] || { bad "--quiet prints messages"; cat "$dir/step.err"; }
 [ $failed -eq 0 ]

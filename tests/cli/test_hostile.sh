@@ -1,16 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Training under hostile settings, on hostile scenes and from hostile points: each run ends in a file that is valid, decodes to
-# numbers and shows the training views as well as could be hoped for, or in one line that says what was expected; soon, and with
-# little memory. Runs in the build folder; more of it with ADCGS_FULL=1.
+# Training with hostile settings, on hostile scenes and from hostile points. Each run ends in a file that is valid, decodes to
+# finite numbers and reaches the expected PSNR on the training views; or in one line that gives the expected input. Runs are quick
+# and need little memory. Runs in the build folder; ADCGS_FULL=1 tests more.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-dec adcgs-eval adcgs-info adcgs-demo-scene
 
-# Address space of a run in KiB. A sanitizer wants it all.
+# Address space of a run in KiB. A sanitizer needs all of the address space.
 memory=2500000
 (ulimit -v $memory && ./adcgs-enc --version) >/dev/null 2>&1 || memory=unlimited
 
-# enc SCENE OPTIONS...: its exit code, 124 if it hangs; what it says is in $dir/err.
+# enc SCENE OPTIONS...: gives its exit code, 124 if it hangs; its messages are in $dir/err.
 enc()
 {
     at=$1
@@ -20,7 +20,7 @@ enc()
         >"$dir/out" 2>"$dir/err" </dev/null
 }
 
-# good WHAT FLOOR SCENE OPTIONS...: a file, whose training views have so many dB at least.
+# good WHAT FLOOR SCENE OPTIONS...: the run makes a file; the PSNR of its training views is at least FLOOR dB.
 good()
 {
     what=$1 floor=$2 trained=$3
@@ -31,7 +31,7 @@ good()
     look
 }
 
-# either ...: that, or it diverged in spite of all, which depends on the machine, and says so.
+# either ...: as good, or training diverged and a message says so; this depends on the machine.
 either()
 {
     what=$1 floor=$2 trained=$3
@@ -44,13 +44,13 @@ either()
     [ -z "$VERBOSE" ] || sed "s#^#$what: #" "$dir/err"
 }
 
-# look: at the file of the run.
+# look: check the file of the run.
 look()
 {
     grep -iE '\b(nan|inf|infinity)\b' "$dir/err" "$dir/log" && bad "$what: what is no number is reported"
     ./adcgs-info --check "$dir/x" >"$dir/out" 2>&1 || { bad "$what: --check"; cat "$dir/out"; }
     ./adcgs-dec "$dir/x" -o - -f raw --float -t 0 >"$dir/raw" 2>"$dir/out" || { bad "$what: cannot be decoded"; cat "$dir/out"; }
-    od -An -v -tx4 -w4 "$dir/raw" | grep -q '^ *[7f]f[89a-f]' && bad "$what: frames hold what is no number"
+    od -An -v -tx4 -w4 "$dir/raw" | grep -q '^ *[7f]f[89a-f]' && bad "$what: frames with NaN or infinity"
     ./adcgs-eval "$dir/x" "$trained" --split train --threads 1 --json >"$dir/eval" 2>"$dir/out" ||
         { bad "$what: cannot be evaluated"; cat "$dir/out"; }
     psnr=$(sed -n 's/^  "psnr": \([-0-9.]*\),*$/\1/p' "$dir/eval")
@@ -58,7 +58,8 @@ look()
     [ -z "$VERBOSE" ] || echo "$what: $psnr dB, $(wc -c <"$dir/x") bytes"
 }
 
-# refused WHAT CODE TEXT SCENE OPTIONS...: in one line with TEXT (a basic regular expression), and there is no file.
+# refused WHAT CODE TEXT SCENE OPTIONS...: the run fails with CODE and with TEXT (a basic regular expression) in one line, without
+# a file.
 refused()
 {
     what=$1 code=$2 text=$3
@@ -68,11 +69,11 @@ refused()
     [ "$got" -eq "$code" ] || { bad "$what: exit code $got, expected $code"; cat "$dir/err"; }
     [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "$what: not one line on standard error"; cat "$dir/err"; }
     grep -q -- "$text" "$dir/err" || { bad "$what: no \"$text\""; cat "$dir/err"; }
-    [ ! -e "$dir/x" ] || bad "$what: there is a file"
+    [ ! -e "$dir/x" ] || bad "$what: a file exists"
     [ -z "$VERBOSE" ] || sed "s#^#$what: #" "$dir/err"
 }
 
-# says TEXT: the last run remarked on it.
+# says TEXT: the last run printed this message.
 says() { grep -q -- "$1" "$dir/err" || { bad "$what: no word of \"$1\""; cat "$dir/err"; }; }
 
 # tiny NAME WxH MOMENTS CAMERAS: the tiny scene in $dir/NAME.
@@ -82,7 +83,7 @@ tiny()
         { bad "adcgs-demo-scene"; exit 1; }
 }
 
-# rig NAME CAMERAS MOMENTS WIDTH HEIGHT BYTE: pictures of one colour, from a row of cameras; BYTE for tr.
+# rig NAME CAMERAS MOMENTS WIDTH HEIGHT BYTE: images of a single colour, from a row of cameras; BYTE in the notation of tr.
 rig()
 {
     mkdir "$dir/$1"
@@ -103,8 +104,8 @@ rig()
     done
 }
 
-# move NAME SCALE OFFSET FLIP: the scene $dir/scene with other poses in $dir/NAME: its cameras at SCALE times their places plus
-# OFFSET; FLIP -1: axes of the other convention.
+# move NAME SCALE OFFSET FLIP: the scene $dir/scene with other poses in $dir/NAME: camera positions times SCALE, plus OFFSET;
+# FLIP -1: axes of the other convention.
 move()
 {
     cp -r "$dir/scene" "$dir/$1"
@@ -121,7 +122,7 @@ move()
     done
 }
 
-# points NAME N WHERE: so many points in $dir/NAME.ply, of which awk prints WHERE.
+# points NAME N WHERE: N points in $dir/NAME.ply; the awk expression WHERE gives their positions.
 points()
 {
     { printf 'ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\nend_header\n' "$2"
@@ -135,7 +136,7 @@ tiny scene 16x16 4 3
 
 # ---- Settings ----
 
-# Learning rates ten times too high are borne, a hundred times are found out; what does not learn is no failure.
+# Learning rates ten times too high work; at a hundred times divergence is detected. A rate of 0 is no failure.
 # shellcheck disable=SC2086
 for rate in features prediction motion entropy; do
     good "learn_$rate=10" 22 "$scene" $short --set learn_$rate=10
@@ -177,7 +178,7 @@ noise_from=2,rate_from=2,fine_from=2,prune_units_at=2,prune_units_again=2,decide
     refused "lambda that is no number" 2 "lambda nan: expected" "$scene" $short --lambda nan
 }
 
-# Longer runs, all at once.
+# Longer runs with several hostile settings each.
 # shellcheck disable=SC2086
 if [ -n "$ADCGS_FULL" ]; then
     for settings in learn_motion=100 learn_prediction=100 learn_features=100 learn_entropy=100,step_fv=10 \
@@ -211,7 +212,7 @@ points wide 20 'i ? "0 0 0" : "1e30 -1e30 1e30"'
     refused "a point that is no number" 4 "bad.ply: vertex 7: y is not a finite number" "$scene" $short --points "$dir/bad.ply"
 }
 
-# ---- Pictures ----
+# ---- Images ----
 
 for size in 1x1 2x1 1x16 16x1 3x3; do
     tiny $size $size 4 3
@@ -219,7 +220,7 @@ for size in 1x1 2x1 1x16 16x1 3x3; do
 done
 tiny still 16x16 1 3
 good "one moment" 20 "$dir/still" --max-anchors 100 --iterations $n
-# One colour, black and white too, by any number of cameras and moments; one pixel of it.
+# Images of a single colour, including black and white, with several numbers of cameras and time steps; images of a single pixel.
 for cameras in 1 3; do
     for moments in 1 3; do
         [ -n "$ADCGS_FULL" ] || [ $cameras != $moments ] || [ $cameras = 1 ] || continue
@@ -232,7 +233,7 @@ for cameras in 1 3; do
 done
 rig pixel 3 2 1 1 '\200'
 good "one pixel of one colour" 30 "$dir/pixel" --max-anchors 100 --iterations $n
-# One picture, alone, again at each moment, from everywhere, and twice the same view.
+# One image: alone, at each time step, from all cameras, and as two equal views.
 rig one 1 1 16 16 '\0'
 rig again 1 4 16 16 '\0'
 rig everywhere 3 4 16 16 '\0'
@@ -248,7 +249,7 @@ good "a view twice" 22 "$dir/twice" --max-anchors 100 --iterations $n
 
 # ---- Poses ----
 
-# The same at any scale, which the codec takes out; elsewhere; with all cameras in one place; looking away.
+# The same scene at any scale, since the codec normalises it; with an offset; with all cameras in one place; looking away.
 good "as it is" 20 "$scene" --max-anchors 100 --iterations $n
 sole=$psnr
 for scale in 1e-6 1e6; do

@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Streams by http, from a real server that knows nothing of them: the folder and the configuration of examples/http. What a URL
-# names decodes as the file does; a moment costs its segments; servers that fail, lie or change cost one line.
-# Runs in the build folder.
+# Streams over HTTP from a real server that needs no support for them: the folder and the configuration of examples/http. A URL
+# decodes to the same frames as the file. One time needs only the bytes of its segment. A server that fails, sends wrong answers
+# or changes its file causes one line. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-info conformance/make_vectors
 unset http_proxy https_proxy all_proxy HTTPS_PROXY ALL_PROXY
-# A server whose head has a line of 200 kB, once.
+# First a server whose header has a line of 200 kB.
 if command -v python3 >/dev/null && ! ./adcgs-dec http://127.0.0.1:1/ --md5 2>&1 | grep -q 'this build lacks'; then
     python3 -c 'import socket
 s = socket.create_server(("127.0.0.1", 0))
@@ -28,7 +28,8 @@ nginx=$(PATH=$PATH:/usr/sbin:/usr/local/sbin command -v nginx) || { echo "skippe
     { echo "skipped: no libcurl in this build"; exit 77; }
 vectors=${srcdir:-.}/conformance/vectors
 
-# Streams: eight segments that share nothing, of some 900 kB in all; two of tiers, one with a camera; one that is cut off; one of nothing.
+# Streams: eight independent segments of about 900 kB in all; two streams of tiers, one with a camera; a truncated one; an empty
+# one.
 mkdir "$dir/recipes" "$dir/vectors" "$dir/http:"
 cat >"$dir/recipes/good-long.txt" <<'END_RECIPE'
 title "Eight segments, each a key with networks of its own"
@@ -55,12 +56,12 @@ cp "$vectors/good-geom-contexts.adcgs" "$dir/other.adcgs"
 stored=$dir/stored.adcgs
 mv "$dir/vectors/good-stored.adcgs" "$stored"
 size=$(wc -c <"$long")
-[ "$size" -gt 800000 ] || bad "the long stream has $size bytes only"
+[ "$size" -gt 800000 ] || bad "the long stream has only $size bytes"
 head -c 400000 "$long" >"$dir/cut.adcgs"
 cp "$tiers" "$dir/http:/tiers.adcgs"
 : >"$dir/empty.adcgs"
 
-# What servers may do. /changed is another file from the second range on, which the server says; /swapped says nothing.
+# The behaviour of servers. /changed serves another file from the second range on, and the answer says so; /swapped hides it.
 server()
 {
     cat <<END_SERVER
@@ -87,7 +88,7 @@ location = /drip.adcgs { limit_rate 1k; alias $stored; }
 END_SERVER
 }
 
-# The example's server, on a port that is free. It is stopped however the test ends.
+# The example's server, on a free port. It is stopped at the end of the test in any case.
 pid=
 trap '[ -z "$pid" ] || kill $pid 2>/dev/null; rm -rf "$dir"' EXIT
 trap 'exit 99' HUP INT TERM
@@ -109,8 +110,8 @@ done
 [ -n "$pid" ] || { bad "nginx does not start"; cat "$dir/nginx.log"; exit 1; }
 at=http://127.0.0.1:$port
 
-# requests: what was asked for since then, into $dir/requests; $count and $sum, of bytes. The server does one thing after the
-# other: once it answers again, all is written.
+# requests: write the requests since the last call to $dir/requests; $count is their number, $sum that of their bytes. The server
+# handles requests in order: once it answers again, its log is complete.
 requests()
 {
     ./adcgs-info $at/sync >"$dir/out" 2>&1
@@ -119,7 +120,7 @@ requests()
     count=$(wc -l <"$dir/requests")
     sum=$(awk '{ n += $2 } END { print n + 0 }' "$dir/requests")
 }
-# same FILE OPTIONS...: the same frames of the file and by http.
+# same FILE OPTIONS...: the frames of the file and over HTTP are equal.
 same()
 {
     name=$1
@@ -127,11 +128,11 @@ same()
     expect 0 "" ./adcgs-dec "$dir/$name" --md5 --quiet "$@"
     mv "$dir/out" "$dir/expected"
     expect 0 "" ./adcgs-dec "$at/$name" --md5 --quiet "$@"
-    cmp "$dir/out" "$dir/expected" && [ -s "$dir/out" ] || bad "other frames by http: $name $*"
-    [ ! -s "$dir/err" ] || { bad "--quiet is not"; cat "$dir/err"; }
+    cmp "$dir/out" "$dir/expected" && [ -s "$dir/out" ] || bad "other frames over HTTP: $name $*"
+    [ ! -s "$dir/err" ] || { bad "--quiet prints messages"; cat "$dir/err"; }
 }
 
-# All of it is one request; no more of it than a budget allows is another.
+# The whole stream is one request; so is the part that a budget allows.
 requests
 same long.adcgs
 requests
@@ -142,7 +143,7 @@ requests
 same tiers.adcgs --tiers 1
 same cut.adcgs
 same long.adcgs --conceal
-# A body without end, behind a stream of level 1: reading ends at the bound of the level, plus the bytes in flight.
+# An endless body after a stream of level 1: reading ends at the limit of the level, plus the bytes in transfer.
 cp "$tiers" "$dir/endless.adcgs"
 truncate -s 200M "$dir/endless.adcgs"
 requests
@@ -154,24 +155,24 @@ rm "$dir/endless.adcgs"
 same long.adcgs --conceal
 requests
 
-# A moment costs the first range, the index, and what is about its segment; a span those of its segments.
+# One time needs the first range, the index, and about its segment; a range of times needs their segments.
 for t in 0 0.05 0.1 0.17 0.2 0.25 0.3 0.32; do
     same long.adcgs -t $t
     requests
     [ $count -le 4 ] && [ "$sum" -lt $((size / 3)) ] || { bad "time $t: $sum bytes of $size"; cat "$dir/requests"; }
-    grep -v '^206 ' "$dir/requests" && bad "time $t: not all are ranges"
+    grep -v '^206 ' "$dir/requests" && bad "time $t: a request without a range"
 done
 same long.adcgs -t 0.1:0.15
 requests
 [ "$sum" -lt $((size * 2 / 3)) ] || { bad "a span: $sum bytes of $size"; cat "$dir/requests"; }
-same cut.adcgs -t 0.05 # without an index, and with an end that is not there
+same cut.adcgs -t 0.05 # without an index, since the end is missing
 same tiers.adcgs -t 0  # a single segment
 requests
 
-# The other ways of decoding.
+# Other options for decoding.
 expect 0 "" ./adcgs-dec $at/moved.adcgs -t 0.2 --quiet -o "$dir/a.ppm"
 expect 0 "" ./adcgs-dec "$long" -t 0.2 --quiet -o "$dir/b.ppm"
-cmp "$dir/a.ppm" "$dir/b.ppm" || bad "another picture by a redirect"
+cmp "$dir/a.ppm" "$dir/b.ppm" || bad "another image through a redirect"
 expect 0 "" ./adcgs-dec "$tiers" --beside $at/long.adcgs --camera orbit -t 0 --quiet -o "$dir/beside.ppm"
 expect 0 "" ./adcgs-dec $at/long.adcgs -t 0.2 --quiet --splats "$dir/a.ply"
 expect 0 "" ./adcgs-dec "$long" -t 0.2 --quiet --splats "$dir/b.ply"
@@ -195,7 +196,7 @@ expect 0 "" ./adcgs-info $at/tiers.adcgs --bytes 9k -o "$dir/less.adcgs"
 (cd "$dir" && exec "$OLDPWD/adcgs-info" ./http:/tiers.adcgs) >"$dir/out" 2>&1 ||
     { bad "a file named ./http:..."; cat "$dir/out"; }
 
-# Without ranges all is read, and said.
+# Without ranges the whole file is read, and a message says so.
 requests
 expect 0 "supports no ranges: reading the whole stream" ./adcgs-dec $at/whole.adcgs -t 0.2 --md5
 mv "$dir/out" "$dir/expected"
@@ -204,7 +205,7 @@ requests
 expect 0 "" ./adcgs-dec "$long" -t 0.2 --md5
 cmp "$dir/out" "$dir/expected" || bad "other frames without ranges"
 
-# curl, and a pipe: a prefix is a coarser picture; bytes are used as they come.
+# curl and a pipe: a prefix gives a coarser image; bytes are used as they arrive.
 if command -v curl >/dev/null; then
     curl -s -r 0-8999 $at/tiers.adcgs | ./adcgs-dec - --md5 >"$dir/out" 2>"$dir/err" || { bad "a prefix"; cat "$dir/err"; }
     grep -q 'ends early' "$dir/err" || bad "a prefix is not said to end early"
@@ -216,7 +217,7 @@ else
     echo "skipped: no curl"
 fi
 
-# What goes wrong is one line, and nothing is written.
+# An error is one line, and nothing is written.
 for how in "" "-t 0.2"; do
     # fails CODE TEXT URL
     fails()
@@ -256,23 +257,23 @@ if [ -f .libs/adcgs_play.so ]; then
     expect 3 "404" ./adcgs-dec $at/none --play --script "$dir/script"
     expect 4 "not an adcgs stream" ./adcgs-dec $at/text --play --script "$dir/script"
     expect 0 "" ./adcgs-dec $at/cut.adcgs --play --conceal --script "$dir/script"
-    # It opens with what there is to see, sharpens, and leaves before all has come.
+    # The player opens with the first usable bytes, sharpens the image, and can quit before the stream is complete.
     play="--play --script $dir/script --time 0 --size 128x96 --threads 2"
     printf 'wait 1 tiers\nexpect ended 0\nscreenshot %s/some.ppm\nquit\n' "$dir" >"$dir/script"
     requests
     # shellcheck disable=SC2086
     expect 0 "" ./adcgs-dec $at/drip.adcgs $play
     requests
-    [ $count -eq 1 ] && [ "$sum" -lt "$(wc -c <"$stored")" ] || { bad "the player waits for all"; cat "$dir/requests"; }
+    [ $count -eq 1 ] && [ "$sum" -lt "$(wc -c <"$stored")" ] || { bad "the player waits for all bytes"; cat "$dir/requests"; }
     printf 'wait 1 tiers\nexpect ended 0\nwait end\nwait 1 frames\nscreenshot %s/all.ppm\nquit\n' "$dir" >"$dir/script"
     # shellcheck disable=SC2086
     expect 0 "" ./adcgs-dec $at/stored.adcgs $play
     ./adcgs-dec "$stored" -t 0 --size 128x96 --quiet -o "$dir/wanted.ppm"
-    cmp "$dir/all.ppm" "$dir/wanted.ppm" || bad "the player by http shows something else in the end"
-    [ -s "$dir/some.ppm" ] && ! cmp -s "$dir/some.ppm" "$dir/all.ppm" || bad "the player by http does not sharpen"
+    cmp "$dir/all.ppm" "$dir/wanted.ppm" || bad "the player over HTTP: other final image"
+    [ -s "$dir/some.ppm" ] && ! cmp -s "$dir/some.ppm" "$dir/all.ppm" || bad "the player over HTTP does not sharpen"
 fi
 
-# Frames are there as soon as those bytes are.
+# A frame is written as soon as its bytes have arrived.
 requests
 ./adcgs-dec $at/steady.adcgs -o "$dir/steady%d.ppm" --quiet 2>"$dir/err" &
 client=$!
@@ -280,13 +281,13 @@ while kill -0 $client 2>/dev/null && [ ! -s "$dir/steady0.ppm" ]; do
     sleep 0.05
 done
 kill $client 2>/dev/null && wait $client
-[ $? -eq 143 ] || { bad "frames only when all has come"; cat "$dir/err"; }
+[ $? -eq 143 ] || { bad "frames only after the whole stream"; cat "$dir/err"; }
 requests
-[ $count -eq 1 ] && [ "$sum" -lt "$size" ] || { bad "frames only when all has come"; cat "$dir/requests"; }
+[ $count -eq 1 ] && [ "$sum" -lt "$size" ] || { bad "frames only after the whole stream"; cat "$dir/requests"; }
 ./adcgs-dec "$long" -t 0 -o "$dir/wanted.ppm" --quiet
 cmp "$dir/steady0.ppm" "$dir/wanted.ppm" || bad "another first frame"
 
-# A server that dies in the middle; what it sent before can be played on.
+# A server that stops during a transfer; the bytes received before remain playable.
 if [ -f .libs/adcgs_play.so ]; then
     printf 'wait 1 tiers\nscreenshot %s/alive.ppm\nwait end\nexpect ended 1\nexpect tiers 3\nscreenshot %s/dead.ppm\nquit\n' "$dir" "$dir" \
         >"$dir/script"
@@ -303,11 +304,11 @@ sleep 0.5
 kill $pid
 pid=
 wait $client
-[ $? -eq 3 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "a server that dies"; cat "$dir/err"; }
+[ $? -eq 3 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "a server that stops"; cat "$dir/err"; }
 if [ -f .libs/adcgs_play.so ]; then
     wait $player
-    [ $? -eq 3 ] && [ "$(wc -l <"$dir/play.err")" -eq 1 ] || { bad "a server that dies while it is played"; cat "$dir/play.err"; }
-    [ -s "$dir/dead.ppm" ] || bad "what had come cannot be played any more"
+    [ $? -eq 3 ] && [ "$(wc -l <"$dir/play.err")" -eq 1 ] || { bad "a server that stops during playback"; cat "$dir/play.err"; }
+    [ -s "$dir/dead.ppm" ] || bad "received bytes cannot be played any more"
 fi
-[ ! -e "$dir/none.ppm" ] && [ ! -e "$dir/none.adcgs" ] || bad "something was written"
+[ ! -e "$dir/none.ppm" ] && [ ! -e "$dir/none.adcgs" ] || bad "a failed run wrote a file"
 exit $failed

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-import with a stand-in for COLMAP that knows where the cameras are: what it is called with, poses, times, tests, masks,
-# turned and large pictures, rigs, and everything that can go wrong. With the true one where it is installed, if ADCGS_FULL=1.
+# adcgs-import with a stand-in for COLMAP that gives known poses: arguments, poses, times, test views, masks, rotated and large
+# images, rigs, and all kinds of errors. With ADCGS_FULL=1 also with COLMAP itself, if it is installed.
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-import adcgs-enc tests/cli/make-scenes
@@ -10,7 +10,7 @@ export FAKE=$dir/fake
 fake=$top/tests/cli/fake-colmap
 tests/cli/make-scenes "$dir" >"$dir/kinds" || { bad "make-scenes"; exit 1; }
 
-# import CODE TEXT ARGUMENTS...: of adcgs-import with the stand-in, into $dir/s, which is not there before.
+# import CODE TEXT ARGUMENTS...: run adcgs-import with the stand-in; it has to create $dir/s.
 import()
 {
     code=$1 text=$2
@@ -18,13 +18,13 @@ import()
     rm -rf "$dir/s" "$FAKE.calls"
     expect "$code" "$text" ./adcgs-import --colmap "$fake" -o "$dir/s" "$@"
 }
-# plain: the scene file in one line, without blanks, tiny numbers as 0.
+# plain: the scene file in one line, without blanks, with tiny numbers as 0.
 plain() { tr -d ' \n' <"$dir/s/scene.json" | sed -E 's/-?[0-9.]+e-[0-9]+/0/g; s/-0([],])/0\1/g'; }
 has() { plain | grep -qF -- "$1" || { bad "no $1 in the scene file"; cat "$dir/s/scene.json"; }; }
 called() { grep -q -- "$1" "$FAKE.calls" || { bad "COLMAP was not called with $1"; cat "$FAKE.calls"; }; }
-none() { [ ! -e "$1" ] || bad "$1 is there"; }
+none() { [ ! -e "$1" ] || bad "$1 exists"; }
 
-# Pictures of the LLFF scene: 24x16, numbered.
+# Images of the LLFF scene: 24x16, numbered.
 pictures=$dir/llff/images
 first=$(find "$pictures" -type f | sort | head -n 1)
 stem=${first##*/} stem=${stem%.*}
@@ -35,17 +35,17 @@ grep -q '^poses: 20 points, 0.50 pixels off on average, each in 4.0 images$' "$d
 none "$dir/s.importing"
 none "$dir/s/sparse"
 none "$dir/s/colmap.log"
-# The third camera is at x = 2; its y, which is down, has become -z, and what it looks along y.
+# The third camera is at x = 2. Its y axis, which points down, becomes -z; its viewing direction becomes y.
 has '"camera_to_world":[[1,0,0,2],[0,0,1,0],[0,-1,0,0]]'
 has '"width":24,"height":16,"fx":20,"fy":21,"cx":12,"cy":8,"k1":0.01,"camera_to_world"'
 has '"up":"z","points":"points.ply"'
 [ "$(plain | grep -o '"split":"test"' | wc -l)" -eq $(((n + 3) / 8)) ] || bad "views for testing"
-plain | grep -q 'time_offset\|frame_rate' && bad "pictures of one time have times"
+plain | grep -q 'time_offset\|frame_rate' && bad "images of one time have times"
 called 'feature_extractor .*--ImageReader.single_camera_per_folder 1 .*--ImageReader.camera_model SIMPLE_RADIAL .*--SiftExtraction.use_gpu 0'
 called 'exhaustive_matcher .*--SiftMatching.use_gpu 0'
 expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
 
-# A film: times, and every second frame of more than are wanted.
+# A film: times, and every second frame if there are more than requested.
 import 0 '' --fps 10 --test 2 --lens opencv --threads 3 "$pictures"
 has '"frame_rate":"10/1"'
 has '"time_offset":0.2,'
@@ -57,12 +57,12 @@ called '--FeatureMatching.use_gpu 0'
 grep -q '"kind": "film"' "$dir/out" || { bad "JSON"; cat "$dir/out"; }
 plain | grep -q split && bad "views for testing with --test 0"
 
-# Of two models the larger one; a picture that has no pose is left out.
+# The larger one of two models; an image without a pose is left out.
 FAKE_HOW=two import 0 'the images form 2 scenes' --fps 10 "$pictures"
 grep -q "$((n - 1)) of $n images" "$dir/out" || { bad "the larger model"; cat "$dir/out"; }
 FAKE_HOW=loose import 0 'points are 2.5 pixels off' --fps 10 "$pictures"
 
-# Turned by EXIF, and too large: 1036x776 lies on its side, 1600 pixels are enough for it, 200 are not.
+# Rotated by EXIF, and too large: 1036x776 is stored sideways. It is below the limit of 1600 pixels, but not below 200.
 mkdir "$dir/turned" "$dir/masks"
 for i in 1 2 3; do
     {
@@ -76,11 +76,11 @@ grep -q '; 150x200$' "$dir/out" || { bad "turned and reduced"; cat "$dir/out"; }
 cp "$top/doc/demo.jpg" "$dir/turned/upright.jpg"
 import 0 '' "$dir/turned"
 grep -q '; 1036x776$' "$dir/out" || { bad "not turned, not reduced"; cat "$dir/out"; }
-cmp -s "$top/doc/demo.jpg" "$dir/s/images/camera1/upright.jpg" || bad "a picture that is upright is not as it was given"
-[ "$(ls "$dir/s/images")" = "$(printf 'camera1\ncamera2')" ] || bad "pictures that lie and stand are of one camera"
-[ -f "$dir/s/images/camera2/view_1.jpg" ] || bad "names of pictures"
+cmp -s "$top/doc/demo.jpg" "$dir/s/images/camera1/upright.jpg" || bad "an upright image is changed"
+[ "$(ls "$dir/s/images")" = "$(printf 'camera1\ncamera2')" ] || bad "one camera for landscape and portrait images"
+[ -f "$dir/s/images/camera2/view_1.jpg" ] || bad "names of images"
 
-# Masks: one is there, for COLMAP and for the scene.
+# Masks: one mask, for COLMAP and for the scene.
 { printf 'P6 24 16 255\n'; head -c 1152 /dev/zero; } >"$dir/masks/$stem.ppm"
 import 0 '' --fps 10 --masks "$dir/masks" "$pictures"
 called '--ImageReader.mask_path'
@@ -92,7 +92,7 @@ rm "$dir"/masks/*
 import 4 'no mask there has the name' --fps 10 --masks "$dir/masks" "$pictures"
 rm -rf "$dir/s.importing"
 
-# Videos: of one camera that moves, and of some that stand.
+# Videos: one moving camera, and several fixed ones.
 if grep -q '^neu3d-videos' "$dir/kinds"; then
     import 0 '' "$dir/neu3d-videos/cam03.mp4" --frames 3000
     has '"name":"cam03_000000","images":"images/cam03/cam03_000000.jpg"'
@@ -101,11 +101,11 @@ if grep -q '^neu3d-videos' "$dir/kinds"; then
     import 0 '' "$dir"/neu3d-videos/cam*.mp4
     grep -q "^$dir/s: 9 of 9 static cameras, 0.12 s" "$dir/out" || { bad "rig"; cat "$dir/out"; }
     has '"name":"cam01","video":"videos/cam01.mp4"'
-    has '"camera_to_world":[[1,0,0,4],[0,0,1,0],[0,-1,0,0]]' # of its three pictures at 3, 4 and 5
-    cmp -s "$dir/neu3d-videos/cam01.mp4" "$dir/s/videos/cam01.mp4" || bad "the video is not the one that was given"
+    has '"camera_to_world":[[1,0,0,4],[0,0,1,0],[0,-1,0,0]]' # the mean of its three images at 3, 4 and 5
+    cmp -s "$dir/neu3d-videos/cam01.mp4" "$dir/s/videos/cam01.mp4" || bad "the video is changed"
     none "$dir/s/images"
     [ "$(plain | grep -o '"fx":20,"fy":21,"cx":12,"cy":8,"k1":0.01,"camera' | wc -l)" -eq 9 ] || bad "cameras of a rig share their lens"
-    for kind in opencv fisheye; do # each of its own lens, of both kinds
+    for kind in opencv fisheye; do # each camera with its own lens, of both kinds
         import 0 '' "$dir"/neu3d-videos/cam*.mp4 --own-lens --lens $kind
         called "camera_model $([ $kind = opencv ] && echo 'OPENCV ' || echo OPENCV_FISHEYE)"
         lens=$([ $kind = opencv ] || echo '"lens":"fisheye",')
@@ -122,25 +122,25 @@ if grep -q '^neu3d-videos' "$dir/kinds"; then
     import 2 'not both' "$dir/neu3d-videos/cam03.mp4" "$pictures"
     import 2 'has times of its own' --fps 3 "$dir/neu3d-videos/cam03.mp4"
 else
-    echo "skipped: videos: this build writes none"
+    echo "skipped: videos: this build cannot write them"
 fi
 
-# What goes wrong, in one line; what COLMAP said stays, and what was made before is gone on with.
+# Errors, in one line. COLMAP's log remains, and the next run resumes from the finished steps.
 FAKE_HOW=fail import 4 'mapper failed with exit code 1: ERROR: no space for cameras; its output is in .*s.importing/colmap.log' "$pictures"
 grep -q 'no space for cameras' "$dir/s.importing/colmap.log" || bad "no log"
 none "$dir/s"
 echo old >"$dir/s.importing/images/camera1/$stem.png"
 import 0 '' --fps 10 "$pictures"
-grep -rq old "$dir/s/images" && bad "footage of other options was gone on with"
+grep -rq old "$dir/s/images" && bad "resumed with footage of other options"
 FAKE_HOW=none import 4 'COLMAP found no cameras' "$pictures"
 echo mine >"$dir/s.importing/images/camera1/more.txt"
 FAKE_HOW=few import 4 "COLMAP found where 2 of $n images were, expected at least 3" "$pictures"
-[ -f "$dir/s.importing/images/camera1/more.txt" ] || bad "the same footage was begun anew"
+[ -f "$dir/s.importing/images/camera1/more.txt" ] || bad "the same footage was imported again"
 rm -rf "$dir/s.importing"
 import 4 ': 1 image, expected at least three' "$(find "$pictures" -type f | head -n 1)"
 import 3 'nowhere' "$dir/nowhere"
 import 4 'no image in this folder' "$dir/masks"
-# A folder without images is refused with the kind of a file in it; HEIC without a reader in OpenImageIO, or damaged.
+# A folder without images is rejected with the kind of a file in it; HEIC without a reader in OpenImageIO, or damaged.
 mkdir "$dir/others"
 printf 'MM\0*\0\0\0\010\0\0\0\0' >"$dir/others/IMG_1.NEF"
 import 5 'IMG_1.NEF: a raw image of a camera, which is not read: develop' "$dir/others"
@@ -155,14 +155,14 @@ printf 'no picture' >"$dir/masks/a.jpg"
 import 4 'a.jpg' "$dir/masks"
 mkdir "$dir/s.importing" && touch "$dir/s.importing/precious"
 import 2 'not made by an unfinished import' "$pictures"
-[ -f "$dir/s.importing/precious" ] || bad "a folder of others was emptied"
+[ -f "$dir/s.importing/precious" ] || bad "a foreign folder was emptied"
 rm -rf "$dir/s.importing"
 expect 2 'exists already' ./adcgs-import --colmap "$fake" -o "$dir/masks" "$pictures"
 expect 2 'give -o' ./adcgs-import "$pictures"
 expect 5 'install COLMAP' ./adcgs-import --colmap "$dir/no-such" -o "$dir/s" "$pictures"
 expect 5 'not COLMAP\|no --database_path' ./adcgs-import --colmap true -o "$dir/s" "$pictures"
 
-# An interrupt ends COLMAP, too.
+# An interrupt also ends COLMAP.
 FAKE_HOW=hang ./adcgs-import --colmap "$fake" -o "$dir/s" "$pictures" >"$dir/out" 2>"$dir/err" &
 pid=$!
 while kill -0 $pid 2>/dev/null && ! grep -qs Processed "$dir/s.importing/colmap.log"; do sleep 0.05; done
@@ -170,9 +170,9 @@ began=$SECONDS
 kill -INT $pid
 wait $pid
 [ $? -eq 3 ] && grep -q 'interrupted; run the same command again' "$dir/err" || { bad "interrupt"; cat "$dir/err"; }
-[ $((SECONDS - began)) -lt 30 ] || bad "COLMAP went on after an interrupt"
+[ $((SECONDS - began)) -lt 30 ] || bad "COLMAP continued after an interrupt"
 
-# adcgs-enc says who makes scenes of bare footage, and doubts frames of a video that have no times.
+# For bare footage adcgs-enc names adcgs-import, and it warns of video frames without times.
 expect 4 'adcgs-import makes one' ./adcgs-enc "$pictures" -o "$dir/s.adcgs"
 expect 4 'adcgs-import makes one' ./adcgs-enc "$top/doc/demo.jpg" -o "$dir/s.adcgs"
 expect 4 'adcgs-import makes one' ./adcgs-enc "$dir/neu3d-videos/cam03.mp4" -o "$dir/s.adcgs"
@@ -187,10 +187,11 @@ for name in frame_1 other; do
     mv "$colmap/images/${name}03.ppm" "$colmap/images/${name}09.ppm"
     sed -i "s/${name}03/${name}09/" "$colmap/sparse/0/images.txt"
     ./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 2>&1 | grep 'frames of a video' &&
-        bad "doubts of pictures that do not count"
+        bad "a warning of images that are not numbered in order"
 done
 
-# Masks of a COLMAP scene, and one for a whole row of pictures of a scene file: as large as the pictures, and looked at.
+# Masks of a COLMAP scene, and one mask for all images of a camera in a scene file. They have the size of the images, and have an
+# effect.
 mkdir "$colmap/masks"
 { printf 'P6 24 16 255\n'; head -c 576 /dev/zero; head -c 576 /dev/zero | tr '\0' x; } >"$colmap/masks/other01.ppm"
 rm -f "$dir/plain.adcgs"
@@ -198,20 +199,20 @@ rm -f "$dir/plain.adcgs"
 cp "$dir/s.adcgs" "$dir/masked.adcgs"
 mv "$colmap/masks/other01.ppm" "$colmap/masks/other01.ppm.ppm"
 ./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "masks with COLMAP's names"
-cmp -s "$dir/s.adcgs" "$dir/masked.adcgs" || bad "COLMAP's names of masks are other masks"
+cmp -s "$dir/s.adcgs" "$dir/masked.adcgs" || bad "other result with COLMAP's names of masks"
 rm "$colmap"/masks/*
 ./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "without masks"
-cmp -s "$dir/s.adcgs" "$dir/masked.adcgs" && bad "a mask of COLMAP's changes nothing"
+cmp -s "$dir/s.adcgs" "$dir/masked.adcgs" && bad "a mask of a COLMAP scene has no effect"
 import 0 '' --fps 10 "$pictures"
 { printf 'P6 24 16 255\n'; head -c 576 /dev/zero; head -c 576 /dev/zero | tr '\0' x; } >"$dir/s/mask.ppm"
 ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "a scene file"
 sed -i 's/"fx"/"masks": "mask.ppm", "fx"/' "$dir/s/scene.json"
 ./adcgs-enc "$dir/s" -o "$dir/t.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "masks of a scene file"
-cmp -s "$dir/s.adcgs" "$dir/t.adcgs" && bad "masks of a scene file change nothing"
+cmp -s "$dir/s.adcgs" "$dir/t.adcgs" && bad "masks of a scene file have no effect"
 sed -i 's/mask.ppm/nowhere.ppm/' "$dir/s/scene.json"
 expect 3 'nowhere.ppm' ./adcgs-enc "$dir/s" -o "$dir/t.adcgs" --preset draft --set stereo=0 -n 10 --threads 2
 
-# The true one: the table, which cameras on an arc look at.
+# COLMAP itself, on the table seen by cameras on an arc.
 if [ -z "${ADCGS_FULL:-}" ] || ! command -v colmap >/dev/null; then
     echo "skipped: COLMAP itself: ADCGS_FULL=1 where it is installed"
 elif ./adcgs-demo-scene --scene still --size 320x240 -q -o "$dir/still"; then
@@ -219,7 +220,7 @@ elif ./adcgs-demo-scene --scene still --size 320x240 -q -o "$dir/still"; then
     cp "$dir"/still/train/r_0[0-3]?.png "$dir/views"
     ./adcgs-import "$dir/views" -o "$dir/true" --json >"$dir/out" 2>"$dir/err" || { bad "COLMAP"; cat "$dir/err"; }
     cat "$dir/out" "$dir/err"
-    [ "$(sed -n 's/.*"posed": \([0-9]*\),/\1/p' "$dir/out")" -ge 10 ] || bad "too few pictures have a pose"
+    [ "$(sed -n 's/.*"posed": \([0-9]*\),/\1/p' "$dir/out")" -ge 10 ] || bad "too few images have a pose"
     expect 0 '' ./adcgs-enc "$dir/true" -o "$dir/s.adcgs" --preset draft -n 10 --threads 2 -q
 fi
 [ $failed -eq 0 ]

@@ -1,14 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc --plan and adcgs-join: parts that are learnt apart, in any order, by other threads, with no pictures but their own,
-# make the stream of one process; what is wrong with a part is said by name, and nothing is lost. Runs in the build folder.
+# adcgs-enc --plan and adcgs-join: segments trained separately, in any order, with other numbers of threads and only with their
+# own images, give the stream of one process. An error names the segment, and no data is lost. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-join adcgs-info adcgs-demo-scene tests/cli/edit-stream
 
 scene=$dir/scene plan=$dir/plan.json
 tiny_scene "$scene"
 short="--preset draft --iterations 20 --key 0.15 --lambda 0.08 --set square_weight=0.7,k=4,stereo=4 --no-progression"
-# learn N OPTIONS...: segment N by the plan.
+# learn N OPTIONS...: train segment N of the plan.
 learn()
 {
     n=$1
@@ -16,7 +16,7 @@ learn()
     ./adcgs-enc "$scene" --plan "$plan" --segment "$n" "$@" >"$dir/out" 2>"$dir/err" || { bad "segment $n"; cat "$dir/err"; }
 }
 states() { ./adcgs-join "$plan" --list 2>"$dir/err" | cut -d ' ' -f 1-3 | xargs; }
-is() { [ "$(states)" = "$1" ] || { bad "it lists: $(states)"; cat "$dir/err"; }; }
+is() { [ "$(states)" = "$1" ] || { bad "--list gives: $(states)"; cat "$dir/err"; }; }
 
 # shellcheck disable=SC2086
 {
@@ -27,17 +27,17 @@ is() { [ "$(states)" = "$1" ] || { bad "it lists: $(states)"; cat "$dir/err"; };
 }
 is "1 0 ready 2 1 waits 3 0 ready"
 expect 3 "plan.1.adcgs: missing: train segment 1 first" ./adcgs-enc "$scene" --plan "$plan" --segment 2
-# What the fuzz target begins with is a plan, too: of all settings that there are.
+# The seed of the fuzz target is also a valid plan, with all current settings.
 expect 0 "" ./adcgs-join "${srcdir:-.}/tests/fuzz/seeds/plan/three.json" --list
 
-# The last segment first, from a scene that has no other pictures but those that tell the size of each split.
+# The last segment first, from a scene with only its own images and those that give the image size of each split.
 mkdir "$dir/own"
 cp "$scene"/*.json "$dir/own"
 own=$(awk '/"begin"/ { n++ } n == 3' "$plan" | sed -n 's/^ *"\(.*ppm\)",*$/\1/p')
 for file in train/r_000.ppm val/r_000.ppm test/r_000.ppm $own; do
     mkdir -p "$(dirname "$dir/own/$file")" && cp "$scene/$file" "$dir/own/$file"
 done
-[ "$(find "$dir/own/train" -name '*.ppm' | wc -l)" -lt "$(find "$scene/train" -name '*.ppm' | wc -l)" ] || bad "all are its own"
+[ "$(find "$dir/own/train" -name '*.ppm' | wc -l)" -lt "$(find "$scene/train" -name '*.ppm' | wc -l)" ] || bad "all images used"
 expect 3 "train/r_00[0-9].ppm: cannot open" ./adcgs-enc "$dir/own" --plan "$plan" --segment 1
 expect 0 "plan.3.adcgs: segment 3 of 3" ./adcgs-enc "$dir/own" --plan "$plan" --segment 3 --threads 1
 learn 1 --json
@@ -45,19 +45,19 @@ grep -q '"segment": 1,' "$dir/out" || { bad "--json"; cat "$dir/out"; }
 is "1 0 done 2 1 ready 3 0 done"
 echo old >"$dir/join.adcgs"
 expect 3 "plan.json: 1 of 3 parts missing, .*: 2$" ./adcgs-join "$plan" -o "$dir/join.adcgs"
-[ "$(cat "$dir/join.adcgs")" = old ] || bad "what was there is lost"
+[ "$(cat "$dir/join.adcgs")" = old ] || bad "the old file is lost"
 learn 2 --threads 3
 expect 0 "plan.2.adcgs: present already" ./adcgs-enc "$scene" --plan "$plan" --segment 2
 expect 0 "3 segments" ./adcgs-join "$plan" -o "$dir/join.adcgs"
 cmp "$dir/one.adcgs" "$dir/join.adcgs" || bad "another stream than that of one process"
 [ "$(find "$dir" -name 'plan*' | sed 's|.*/||' | sort | xargs)" = "plan.1.adcgs plan.2.adcgs plan.3.adcgs plan.json" ] ||
-    bad "left behind: $(find "$dir" -name 'plan*' | xargs)"
+    bad "other files remain: $(find "$dir" -name 'plan*' | xargs)"
 expect 2 "is an input" ./adcgs-join "$plan" -o "$dir/plan.2.adcgs"
 expect 2 "either -o" ./adcgs-join "$plan" -o "$dir/x" --list
 
-# What is wrong, and where; all but that stays as it was.
+# Errors and their places; everything else stays unchanged.
 cp "$dir/plan.2.adcgs" "$dir/good"
-# wrong CODE TEXT: of part 2, which is then good again.
+# wrong CODE TEXT: an error in segment 2, which is restored afterwards.
 wrong()
 {
     wanted=$1 says=$2
@@ -85,7 +85,7 @@ before=$(strings "$dir/good" | sed -n 's/^follows *//p')
 tests/cli/edit-stream "$dir/plan.2.adcgs" "$before" "$(echo "$before" | tr 0-9a-f 1-9a-f0)" || bad "edit-stream"
 expect 4 "plan.2.adcgs: was trained from another .*plan.1.adcgs" ./adcgs-join "$plan" -o "$dir/join.adcgs"
 cp "$dir/good" "$dir/plan.2.adcgs"
-cmp "$dir/one.adcgs" "$dir/join.adcgs" || bad "what was there is lost"
+cmp "$dir/one.adcgs" "$dir/join.adcgs" || bad "the old file is lost"
 
 # The plan itself.
 # plan_wrong CODE TEXT SED...: the plan changed by sed.
@@ -111,7 +111,7 @@ sed 's/"time": 0,/"time": 0.01,/' "$views" >"$dir/other" && mv "$dir/other" "$vi
 rm "$dir/plan.3.adcgs"
 expect 4 "not the scene of" ./adcgs-enc "$dir/own" --plan "$plan" --segment 3
 
-# Nothing from the command line changes what a plan says.
+# No option on the command line can change the plan.
 for other in "--seed 1" "--set k=3" "--key 1" "--preset fast" "--fps 30" "--bf16" "-o $dir/x" "--resume $dir/x"; do
     # shellcheck disable=SC2086
     expect 2 "the plan sets" ./adcgs-enc "$scene" --plan "$plan" --segment 3 $other
@@ -121,7 +121,7 @@ expect 2 "number of a segment" ./adcgs-enc "$scene" --plan "$plan" --segment 0.5
 expect 2 "plan.json has 3" ./adcgs-enc "$scene" --plan "$plan" --segment 4
 expect 2 "give --plan" ./adcgs-enc "$scene" -o "$dir/x" --cut 1
 
-# Two runs do not learn the same segment; what a run that is gone, or dead, has left is taken over.
+# Two runs do not train the same segment. A run takes over the claim of a run that has ended or died.
 claim=$dir/plan.3.claim
 echo "elsewhere 1 2026-01-01T00:00:00Z" >"$claim"
 expect 3 "plan.3.claim: another run has segment 3: process 1 on elsewhere, since 2026" \
@@ -131,15 +131,15 @@ echo "$(uname -n) $$ 2026-01-01T00:00:00Z" >"$claim"
 expect 3 "process $$ on $(uname -n)" ./adcgs-enc "$scene" --plan "$plan" --segment 3
 touch -d '2 minutes ago' "$claim"
 learn 3
-[ ! -e "$claim" ] || bad "the claim stays"
+[ ! -e "$claim" ] || bad "the claim remains"
 sh -c 'echo $$' >"$dir/gone"
 echo "$(uname -n) $(cat "$dir/gone") 2026-01-01T00:00:00Z" >"$claim"
 learn 3
-[ ! -e "$claim" ] || bad "the claim of one that is gone stays"
+[ ! -e "$claim" ] || bad "the claim of an ended process remains"
 echo "elsewhere 1 2026-01-01T00:00:00Z" >"$dir/two.adcgs.checkpoint.claim"
 expect 3 "another run has the segments" ./adcgs-enc "$scene" -o "$dir/two.adcgs" --segment 0.1 --preset draft --iterations 30
 
-# Interrupted, the same command goes on.
+# After an interrupt the same command resumes.
 if [ "${ADCGS_FULL:-}" = 1 ]; then
     rm "$dir"/plan*
     longer="--preset draft --iterations 400 --max-anchors 300"

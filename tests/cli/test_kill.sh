@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# A run of several segments that is killed again and again, wherever it happens to be, and resumed each time, writes what a run
-# that nobody disturbs does; whatever it has left on the disk in the meantime is whole. Runs in the build folder.
+# A run of several segments that is killed again and again, at random times, and resumed each time, gives the same stream as an
+# undisturbed run. The files on disk in between have no faults. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-info adcgs-demo-scene
 
@@ -15,7 +15,7 @@ began=$(date +%s.%N)
 $run -o "$dir/whole.adcgs" >"$dir/out" 2>"$dir/err" || { bad "exit code $?"; cat "$dir/err"; exit 1; }
 took=$(echo "$began $(date +%s.%N)" | awk '{ print $2 - $1 }')
 
-# Instants follow from a seed; each lies within what is left of the run, were the kills spread evenly over it.
+# Random times from a fixed seed. Each is at most twice the interval of evenly spread kills.
 instants=$(awk -v n="$kills" -v took="$took" 'BEGIN { srand(7); for (i = 0; i < n; i++) print rand() * 2 * took / n }')
 resume= killed=0
 for instant in $instants; do
@@ -31,7 +31,7 @@ for instant in $instants; do
     done
     [ ! -e "$dir/state.1" ] && [ ! -e "$dir/state.1.adcgs" ] || resume="--resume $dir/state"
 done
-[ "$killed" -gt 0 ] || bad "it was always done before it could be killed"
+[ "$killed" -gt 0 ] || bad "the run always ended before it was killed"
 if [ ! -e "$dir/killed.adcgs" ]; then
     # shellcheck disable=SC2086
     $run -o "$dir/killed.adcgs" --checkpoint "$dir/state" --checkpoint-every 0 $resume >"$dir/out" 2>"$dir/err" ||
@@ -39,6 +39,6 @@ if [ ! -e "$dir/killed.adcgs" ]; then
 fi
 cmp "$dir/whole.adcgs" "$dir/killed.adcgs" || bad "another stream after $killed kills"
 left=$(find "$dir" -name 'state*' -o -name 'killed.adcgs?*' | xargs)
-[ -z "$left" ] || bad "left behind: $left"
+[ -z "$left" ] || bad "other files remain: $left"
 echo "killed $killed times"
 exit $failed

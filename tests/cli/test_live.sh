@@ -1,14 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc --live: footage that comes moment by moment, in pictures and through pipes, gives what it gives when it is all there;
-# the output grows by whole segments, which others can read and join; what is missing, late or damaged; ends of every kind.
-# Runs in the build folder.
+# adcgs-enc --live: footage that arrives frame by frame, as images and through pipes, gives the same stream as complete footage.
+# The output grows by complete segments, which can be read and joined meanwhile. Missing, late and damaged images; all kinds of
+# ends. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-demo-scene
 . "${srcdir:-.}/tests/cli/live.sh"
 
-# All there: the segments that the same cuts give offline, as good as those. They are not the same to the bit: where the scene's
-# origin is follows from all views there, from those of the first segment here, and a mean of other numbers is rounded otherwise.
+# Complete footage: the segments and the quality of an offline run with the same cuts. The bits differ: the origin of the scene
+# comes from all views offline, from those of the first segment here, and other means are rounded differently.
 scene_file "$dir/all" images
 put "$dir/all" 0 1 2 3 4 5 6 7
 touch "$dir/all/end"
@@ -32,9 +32,9 @@ awk -v a="$(psnr "$dir/pair.adcgs")" -v b="$(psnr "$dir/offline.adcgs")" 'BEGIN 
 whole "$dir/all.adcgs"
 ./adcgs-info --json "$dir/all.adcgs" >"$dir/out"
 [ "$(grep -c '"predicted": false' "$dir/out")" -eq 2 ] || { bad "keys"; cat "$dir/out"; }
-[ "$(left)" = "" ] || bad "left behind: $(left)"
+[ "$(left)" = "" ] || bad "other files remain: $(left)"
 
-# Pictures of more than 1600 pixels are reduced, as those of a scene are; not if nobody is to.
+# Images of more than 1600 pixels are reduced, as those of a scene are, except with --scale 1.
 mkdir "$dir/wide"
 cp "$dir/all/scene.json" "$dir/wide" && sed -i 's/"width": 64/"width": 1601/' "$dir/wide/scene.json"
 for i in 0 1 2 3 4 5; do
@@ -48,12 +48,12 @@ wide="--preset draft --max-anchors 50 -n 10 --set stereo=0 --segment 0.1"
 {
     expect 0 'images of 1601 pixels are reduced to 1/2 of that; --scale 1 keeps' ./adcgs-enc --live "$dir/wide" -o "$dir/wide.adcgs" $wide
     [ "$(grep -c 'are reduced' "$dir/err")" -eq 1 ] || { bad "said more than once"; cat "$dir/err"; }
-    ./adcgs-info "$dir/wide.adcgs" --why | grep -q 'settings .*scale=2' || bad "the stream does not tell that pictures were reduced"
+    ./adcgs-info "$dir/wide.adcgs" --why | grep -q 'settings .*scale=2' || bad "the stream does not give the scale of images"
     ./adcgs-enc --live "$dir/wide" -o "$dir/wide.adcgs" $wide --scale 1 2>"$dir/err" || { bad "--scale 1"; cat "$dir/err"; }
     grep 'are reduced' "$dir/err" && bad "reduced in spite of --scale 1"
 }
 
-# A mask for all pictures of a camera, also where segments come one after the other.
+# One mask for all images of a camera, for segments in succession.
 scene_file "$dir/masked" images
 put "$dir/masked" 0 1 2 3 4 5 6 7
 touch "$dir/masked/end"
@@ -69,7 +69,7 @@ sed 's/, "masks": "mask.ppm"//' "$dir/masked/masked.json" >"$dir/masked/scene.js
 [ "$(spans "$dir/masked.adcgs")" = "0 0 0.1 1 0.1 0.2 2 0.2 0.233333" ] || { bad "spans"; spans "$dir/masked.adcgs"; }
 cmp -s "$dir/masked.adcgs" "$dir/seen.adcgs" && bad "masks change nothing"
 
-# Moment by moment: the same, whatever was waited for. The output has each segment as soon as it can.
+# Frame by frame: the same stream, with any delays. The output contains each segment as soon as possible.
 scene_file "$dir/slow" images
 out=$dir/slow.adcgs
 echo old >"$out"
@@ -77,7 +77,7 @@ echo old >"$out"
 ./adcgs-enc --live "$dir/slow" -o "$out" $live 2>"$dir/err" &
 pid=$!
 put "$dir/slow" 0 1 2
-[ "$(cat "$out")" = old ] || bad "the output has gone before there is another"
+[ "$(cat "$out")" = old ] || bad "the old output is gone before the new one exists"
 put "$dir/slow" 3
 wait_for 1 "$out"
 [ "$(spans "$out")" = "0 0 0.1" ] || { bad "not the first segment"; spans "$out"; }
@@ -86,14 +86,14 @@ cmp -n "$(stat -c %s "$out")" "$out" "$dir/all.adcgs" >/dev/null && bad "HEAD kn
 tail -c +1 -f "$out" >"$dir/followed" &
 tail=$!
 put "$dir/slow" 5 4
-head -c 5000 "$(from 18)" >"$dir/slow/$(to 18)" # this one is being written
+head -c 5000 "$(from 18)" >"$dir/slow/$(to 18)" # an incomplete image
 put "$dir/slow" 7
-kill -0 "$pid" 2>/dev/null || bad "half a picture ended the run"
+kill -0 "$pid" 2>/dev/null || bad "an incomplete image ended the run"
 cp "$(from 19)" "$dir/slow/$(to 19)" && cp "$(from 20)" "$dir/slow/$(to 20)" && cp "$(from 18)" "$dir/slow/$(to 18)"
 wait_for 2 "$out"
 touch "$dir/slow/end"
 ended 0
-cmp "$out" "$dir/all.adcgs" || bad "another stream from footage that comes moment by moment"
+cmp "$out" "$dir/all.adcgs" || bad "another stream from footage that arrives frame by frame"
 sleep 0.1
 kill "$tail"
 wait "$tail" 2>/dev/null
@@ -102,8 +102,7 @@ wait "$tail" 2>/dev/null
     { bad "who follows the file gets something else"; cat "$dir/err"; }
 whole "$dir/followed"
 
-# Through standard output; who comes late joins at the next key, and sees the same from there on.
-# shellcheck disable=SC2086
+# Through standard output. A reader that starts late joins at the next key, and gets the same frames from there on.
 ./adcgs-enc --live "$dir/all" -o - $live >"$dir/piped" 2>"$dir/err" || { bad "-o -"; cat "$dir/err"; }
 ./adcgs-info --digest "$dir/piped" | cmp - "$dir/digests" || bad "another stream through a pipe"
 cmp "$dir/piped" "$dir/followed" || bad "a file grows otherwise than a pipe"
@@ -116,7 +115,7 @@ grep -q '^adcgs-dec: standard input: tuned in at segment 1, at 0.1 s$' "$dir/err
 cmp "$dir/out" "$dir/expected" || bad "who joins sees something else"
 expect 4 "not an adcgs stream: its .* bytes contain no header" sh -c "tail -c 3000 '$dir/piped' | ./adcgs-dec - --md5"
 
-# A picture that never comes, and one that stays damaged: the others of their moments are used. It is said once for each camera.
+# A missing image, and one that stays damaged: the other images of their time steps are used. One message for each camera.
 cp -r "$dir/all" "$dir/gaps"
 rm "$dir/gaps/c1/001.ppm" "$dir/gaps/c1/002.ppm"
 head -c 5000 "$dir/all/c4/001.ppm" >"$dir/gaps/c4/001.ppm"
@@ -124,10 +123,10 @@ head -c 5000 "$dir/all/c4/001.ppm" >"$dir/gaps/c4/001.ppm"
 ./adcgs-enc --live "$dir/gaps" -o "$dir/gaps.adcgs" $live 2>"$dir/err" || { bad "gaps"; cat "$dir/err"; }
 grep -q 'c1: no image at 0.0666667 s' "$dir/err" && grep -q 'c4: no image at 0.1 s' "$dir/err" &&
     [ "$(wc -l <"$dir/err")" -eq 2 ] ||
-    { bad "no word of what is missing"; cat "$dir/err"; }
+    { bad "no message about missing images"; cat "$dir/err"; }
 [ "$(spans "$dir/gaps.adcgs")" = "$(spans "$dir/all.adcgs")" ] || bad "other spans with gaps"
 
-# A camera that falls silent is waited for no longer than a segment.
+# The encoder waits at most a segment's length for a camera that stops.
 scene_file "$dir/silent" images
 # shellcheck disable=SC2086
 ./adcgs-enc --live "$dir/silent" -o "$dir/silent.adcgs" $live 2>"$dir/err" &
@@ -141,14 +140,14 @@ touch "$dir/silent/end"
 ended 0
 grep -q 'c5: no image at 0.1 s' "$dir/err" || { bad "no word of a camera that falls silent"; cat "$dir/err"; }
 
-# SIGINT ends what comes; what has come is learnt, and the file is whole.
+# SIGINT ends the input; the footage so far is trained, and the file is valid.
 scene_file "$dir/stop" images
 # shellcheck disable=SC2086
 ./adcgs-enc --live "$dir/stop" -o "$dir/stop.adcgs" $live 2>"$dir/err" &
 pid=$!
 put "$dir/stop" 0 1 2 3 4 5 6
 wait_for 2 "$dir/stop.adcgs"
-# Another run is refused at the same time.
+# A second run at the same time is rejected.
 cp "$dir/err" "$dir/err.first"
 # shellcheck disable=SC2086
 expect 3 "stop.adcgs.claim: another run has this output: process $pid on " ./adcgs-enc --live "$dir/stop" -o "$dir/stop.adcgs" $live
@@ -158,7 +157,7 @@ ended 0
 [ ! -e "$dir/stop.adcgs.claim" ] || bad "a claim is left"
 [ "$(spans "$dir/stop.adcgs")" = "0 0 0.1 1 0.1 0.2" ] || { bad "after SIGINT"; spans "$dir/stop.adcgs"; }
 whole "$dir/stop.adcgs"
-# Killed: what is there are whole segments.
+# Killed: the file contains complete segments.
 rm "$dir/stop.adcgs"
 # shellcheck disable=SC2086
 ./adcgs-enc --live "$dir/stop" -o "$dir/stop.adcgs" $live 2>"$dir/err" &
@@ -167,15 +166,15 @@ wait_for 1 "$dir/stop.adcgs"
 kill -KILL "$pid"
 wait "$pid" 2>/dev/null
 expect 0 "" ./adcgs-dec "$dir/stop.adcgs" -t 0.05 --camera 0 --md5
-# Nothing that shows two moments.
+# Footage with less than two time steps.
 scene_file "$dir/none" images
 put "$dir/none" 0
 touch "$dir/none/end"
 # shellcheck disable=SC2086
 expect 4 "ended with a single frame time" ./adcgs-enc --live "$dir/none" -o "$dir/none.adcgs" $live
-[ ! -e "$dir/none.adcgs" ] || bad "nothing was filmed, and a file of it is there"
+[ ! -e "$dir/none.adcgs" ] || bad "a file without footage"
 
-# A delay that leaves no time: as few iterations as there may be, in all segments.
+# A delay that leaves no time: the least number of iterations in all segments.
 # shellcheck disable=SC2086
 ./adcgs-enc --live "$dir/all" -o "$dir/late.adcgs" $live --iterations 300 --delay 0.11 --json >"$dir/out" 2>"$dir/err" ||
     { bad "--delay"; cat "$dir/err"; }
@@ -186,7 +185,7 @@ grep -q '"most_iterations": 200' "$dir/out" && grep -q '"delay": 0.11' "$dir/out
 grep -q '3 segments of 0.233333 s together' "$dir/err" && grep -q '100 s requested' "$dir/err" ||
     { bad "summary"; cat "$dir/err"; }
 
-# Y4M: files that grow, and pipes. An unknown rate is the stream's own.
+# Y4M: growing files, and pipes. If the rate is unknown, that of the stream is used.
 rates=$dir/rates
 if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$rates.mp4" >/dev/null 2>&1; then
     scene_file "$dir/videos" videos
@@ -212,8 +211,8 @@ if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$rates.mp4" >/dev/null 2>&1; then
     done
     ended 0
     cmp "$dir/videos.adcgs" "$dir/pipes.adcgs" || bad "another stream through pipes"
-    [ "$(left)" = "" ] || bad "left behind: $(left)"
-    # One of them through standard input, which ends as any other.
+    [ "$(left)" = "" ] || bad "other files remain: $(left)"
+    # One of them through standard input, whose end is like that of the others.
     sed 's/"c2.y4m"/"-"/' "$dir/videos/scene.json" >"$dir/videos/input.json"
     mv "$dir/videos/end" "$dir/end"
     for i in 0 1 3 4 5; do
@@ -226,7 +225,7 @@ if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$rates.mp4" >/dev/null 2>&1; then
         { bad "standard input"; cat "$dir/err"; }
     cmp "$dir/videos.adcgs" "$dir/input.adcgs" || bad "another stream through standard input"
     mv "$dir/end" "$dir/videos/end"
-    # A camera alone, and a file as standard input.
+    # A single camera, and a file as standard input.
     sed '/"c[1-5]"/d; s/"c0.y4m"/"-"/; s/},$/}/' "$dir/videos/scene.json" | sed 's/^{"name": "c0".*/&],/; s/^"defaults/ &/' \
         >"$dir/alone.json"
     # shellcheck disable=SC2086
@@ -240,7 +239,7 @@ if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$rates.mp4" >/dev/null 2>&1; then
         expect 4 "cameras\[2\].*video: - is standard input, which camera c0 already uses" \
             ./adcgs-enc --live "$dir/twice.json" -o "$dir/x.adcgs" $live </dev/null
     }
-    # Damage in the third frame of a camera: what was learnt before is a stream.
+    # Damage in the third frame of a camera: the segments trained before are a stream.
     { head -c "$(($(head -n 1 "$dir/videos/c3.y4m" | wc -c) + 2 * (6 + 3 * 64 * 64)))" "$dir/videos/c3.y4m"; echo FLAME; } >"$dir/c3"
     mv "$dir/c3" "$dir/videos/c3.y4m"
     # shellcheck disable=SC2086
@@ -255,7 +254,7 @@ if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$rates.mp4" >/dev/null 2>&1; then
     expect 4 "c3.y4m: expected Y4M" ./adcgs-enc --live "$dir/videos" -o "$dir/x.adcgs" $live
 fi
 
-# Wrong use.
+# Wrong usage.
 # shellcheck disable=SC2086
 {
     expect 2 "delay needs --live" ./adcgs-enc "$dir/all/scene.json" -o "$dir/x.adcgs" --delay 3

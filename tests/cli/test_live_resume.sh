@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc --live --resume: a run that was killed, or told to end, goes on with the stream that it has left, wherever that is cut
-# off or damaged, and writes what a run that nobody disturbed does. Runs in the build folder.
+# adcgs-enc --live --resume: a run that was killed or interrupted resumes from its stream, wherever that is truncated or damaged,
+# and writes the stream of an undisturbed run. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-dec adcgs-info adcgs-demo-scene
 . "${srcdir:-.}/tests/cli/live.sh"
@@ -20,9 +20,9 @@ took=$(echo "$began $(date +%s.%N)" | awk '{ print $2 - $1 }')
 ./adcgs-enc $live "$dir/all" -o - >"$dir/piped" 2>"$dir/err" || { bad "-o -"; cat "$dir/err"; exit 1; }
 [ "$(spans "$dir/all.adcgs")" = "0 0 0.0666667 1 0.0666667 0.133333 2 0.133333 0.2 3 0.2 0.233333" ] ||
     { bad "spans"; spans "$dir/all.adcgs"; }
-[ "$(./adcgs-info --json "$dir/all.adcgs" | grep -c '"predicted": true')" -eq 3 ] || bad "none is predicted"
+[ "$(./adcgs-info --json "$dir/all.adcgs" | grep -c '"predicted": true')" -eq 3 ] || bad "not three predicted segments"
 
-# resume FOLDER CODE TEXT: go on with r.adcgs.
+# resume FOLDER CODE TEXT: resume r.adcgs.
 resume()
 {
     # shellcheck disable=SC2086
@@ -32,10 +32,10 @@ resume()
     [ -z "$3" ] || grep -q -- "$3" "$dir/err" || { bad "no \"$3\" in the message"; cat "$dir/err"; }
 }
 same() { cmp "$dir/r.adcgs" "$dir/all.adcgs" || { bad "another stream: $*"; cat "$dir/err"; }; }
-# at TYPE SEGMENT: where the first such chunk of a segment begins in what grew.
+# at TYPE SEGMENT: offset of the first such chunk of a segment in the piped stream.
 at() { ./adcgs-info "$dir/piped" --bits | awk -v type="$1" -v segment="$2" '$1 == type && $2 == segment { print $3; exit }'; }
 
-# Wherever it is cut off.
+# Truncated at any point.
 one=$(at SEGM 1) two=$(at SEGM 2) three=$(at SEGM 3) index=$(at INDX 0)
 [ -n "$one" ] && [ -n "$two" ] && [ -n "$three" ] && [ -n "$index" ] || { bad "chunks: $one $two $three $index"; exit 1; }
 for cut in "$one" $((one + 9)) $((two - 1)) $(((two + three) / 2)) "$index"; do
@@ -43,26 +43,26 @@ for cut in "$one" $((one + 9)) $((two - 1)) $(((two + three) / 2)) "$index"; do
     resume "$dir/all" 0 ""
     same "cut off at $cut"
 done
-# Damage, and what a file system may leave where it lost power.
+# Damage, and zeros as a file system may leave them after a power failure.
 { head -c "$two" "$dir/piped"; head -c 5000 /dev/zero; } >"$dir/r.adcgs"
 resume "$dir/all" 0 ""
 same "zeros at the end"
 { head -c $((two + 40)) "$dir/piped"; printf damage; tail -c +$((two + 47)) "$dir/piped"; } >"$dir/r.adcgs"
 resume "$dir/all" 0 ""
 same "damage"
-# What is complete already, but for a last segment that was cut short: that is learnt anew.
+# A stream that is complete, except that its last segment was cut short: that segment is trained again.
 cp "$dir/all.adcgs" "$dir/r.adcgs"
 resume "$dir/all" 0 ""
 same "complete"
 
-# Footage that was used may be gone; what goes on is as it would have been.
+# Used footage may be deleted; the rest of the stream is the same.
 cp -r "$dir/all" "$dir/rest"
 rm "$dir"/rest/c[0-5]/000.ppm
 head -c "$two" "$dir/piped" >"$dir/r.adcgs"
 resume "$dir/rest" 0 ""
 same "without what was used"
 
-# Killed at some instants, and each time resumed.
+# Killed at random times, and resumed each time.
 rm "$dir/r.adcgs"
 killed=0 resume=
 for instant in $(awk -v n="$kills" -v took="$took" 'BEGIN { srand(3); for (i = 0; i < n; i++) print rand() * 2 * took / n }'); do
@@ -75,15 +75,15 @@ for instant in $(awk -v n="$kills" -v took="$took" 'BEGIN { srand(3); for (i = 0
     [ ! -e "$dir/r.adcgs" ] || resume="--resume $dir/r.adcgs"
     [ ! -e "$dir/r.adcgs" ] || expect 0 "" ./adcgs-dec "$dir/r.adcgs" --camera 0 -t 0 --md5
 done
-[ "$killed" -gt 0 ] || bad "it was always done before it could be killed"
+[ "$killed" -gt 0 ] || bad "the run always ended before it was killed"
 # shellcheck disable=SC2086
 ./adcgs-enc $live "$dir/all" -o "$dir/r.adcgs" $resume 2>"$dir/err" || { bad "exit code $? after $killed kills"; cat "$dir/err"; }
 same "killed $killed times"
 whole "$dir/r.adcgs"
 
-rm -f "$dir"/.r.adcgs.tmp* # of who was killed before the first segment
+rm -f "$dir"/.r.adcgs.tmp* # of a run killed before its first segment
 
-# Told to end in the middle of a segment; more comes afterwards.
+# Interrupted in the middle of a segment; more footage follows afterwards.
 scene_file "$dir/stop" images
 rm "$dir/r.adcgs"
 # shellcheck disable=SC2086
@@ -99,21 +99,21 @@ put "$dir/stop" 4 5 6 7
 touch "$dir/stop/end"
 resume "$dir/stop" 0 ""
 same "after SIGINT"
-# Who is told to end before there is a segment more leaves all as it was; where nothing more comes the stream is ended.
+# An interrupt before a new segment leaves the existing segments unchanged. Without more footage the stream is ended.
 cp "$dir/before" "$dir/r.adcgs"
 scene_file "$dir/wait" images
 # shellcheck disable=SC2086
 ./adcgs-enc $live "$dir/wait" -o "$dir/r.adcgs" --resume "$dir/r.adcgs" 2>"$dir/err" &
 pid=$!
 sleep 0.3
-cmp "$dir/before" "$dir/r.adcgs" || bad "it changes the stream before it has more"
+cmp "$dir/before" "$dir/r.adcgs" || bad "the stream changed before new footage"
 kill -INT "$pid"
 ended 0
 ./adcgs-info --digest "$dir/before" >"$dir/expected"
-./adcgs-info --digest "$dir/r.adcgs" | cmp - "$dir/expected" || bad "nothing came, and it is another stream"
+./adcgs-info --digest "$dir/r.adcgs" | cmp - "$dir/expected" || bad "another stream without new footage"
 whole "$dir/r.adcgs"
 
-# Segments of another length: none is learnt over what is there.
+# Segments of another length: the existing ones are not trained again.
 head -c "$two" "$dir/piped" >"$dir/r.adcgs"
 ./adcgs-enc --live $short --segment 0.1 "$dir/all" -o "$dir/r.adcgs" --resume "$dir/r.adcgs" --json >"$dir/out" 2>"$dir/err" ||
     { bad "--segment"; cat "$dir/err"; }
@@ -122,7 +122,7 @@ head -c "$two" "$dir/piped" >"$dir/r.adcgs"
 grep -q '"segments_before": 2' "$dir/out" && grep -q '"segments": 1,' "$dir/out" || { bad "--json"; cat "$dir/out"; }
 whole "$dir/r.adcgs"
 
-# Y4M in files goes on, from pipes it does not.
+# Y4M in files can be resumed, from pipes not.
 if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$dir/x.mp4" >/dev/null 2>&1; then
     scene_file "$dir/videos" videos
     for i in 0 1 2 3 4 5; do
@@ -143,17 +143,17 @@ if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$dir/x.mp4" >/dev/null 2>&1; then
         (sleep 1; echo "YUV4MPEG2 W64 H64 F15:1 C444") >"$dir/videos/c$i.y4m" &
     done
     resume "$dir/videos" 2 "c0.y4m: a pipe cannot repeat footage"
-    cmp "$dir/before" "$dir/r.adcgs" || bad "what is refused changes the stream"
+    cmp "$dir/before" "$dir/r.adcgs" || bad "a rejected command changes the stream"
 fi
-[ "$(left)" = "" ] || bad "left behind: $(left)"
+[ "$(left)" = "" ] || bad "other files remain: $(left)"
 
-# What cannot go on, in one line; nothing changes.
+# Invalid cases give one line and change nothing.
 refused()
 {
     cp "$dir/r.adcgs" "$dir/before"
     # shellcheck disable=SC2086
     expect "$1" "$2" ./adcgs-enc $live "$3" -o "$dir/r.adcgs" --resume "$4"
-    cmp "$dir/before" "$dir/r.adcgs" || bad "what is refused changes the stream: $2"
+    cmp "$dir/before" "$dir/r.adcgs" || bad "a rejected command changes the stream: $2"
 }
 head -c $((one / 2)) "$dir/piped" >"$dir/r.adcgs"
 refused 4 "no complete segment" "$dir/all" "$dir/r.adcgs"
@@ -172,5 +172,5 @@ refused 2 "another stream followed, number 2" "$dir/all" "$dir/r.adcgs"
 rm "$dir/r.2.adcgs" "$dir/r.adcgs"
 # shellcheck disable=SC2086
 expect 3 "r.adcgs: No such file" ./adcgs-enc $live "$dir/all" -o "$dir/r.adcgs" --resume "$dir/r.adcgs"
-[ "$(left)" = "" ] || bad "left behind: $(left)"
+[ "$(left)" = "" ] || bad "other files remain: $(left)"
 exit $failed

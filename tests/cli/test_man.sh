@@ -16,11 +16,11 @@ for program in adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-conform adcgs-imp
         fault "$program: not built"
         continue
     fi
-    help=$("./$program" --help) || fault "$program --help leaves with $?"
-    "./$program" --version >/dev/null || fault "$program --version leaves with $?"
+    help=$("./$program" --help) || fault "$program --help exits with $?"
+    "./$program" --version >/dev/null || fault "$program --version exits with $?"
     "./$program" --no-such-option >/dev/null 2>&1
-    [ $? -eq 2 ] || fault "$program: an unknown option is no usage error"
-    # Options start a line of the help; in the page they follow .TP.
+    [ $? -eq 2 ] || fault "$program: an unknown option is not a usage error"
+    # Options are at the start of a line in the help, and after .TP in the page.
     in_help=$(grep -o -E '^ +(-[a-zA-Z], )?--[a-z0-9-]+( [A-Z][A-Za-z:,|]*)?' <<<"$help" | grep -o -E -e '--.*' | sort -u)
     in_page=$(sed 's/\\f[IR]//g; s/[\\"]//g' "$man/$program.1" | grep -A1 '^\.TP' |
         grep -o -E -e '--[a-z0-9-]+ *([A-Z][A-Za-z:,|]*)?' | sed 's/  */ /; s/ *$//' | sort -u)
@@ -34,9 +34,9 @@ for program in adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-conform adcgs-imp
     fi
 done
 
-# The settings of the page are those of the program.
+# The settings in the page are those of the program.
 if [ -x ./adcgs-enc ] && ! "$man/settings.sh" ./adcgs-enc "$man/adcgs-enc.1" | diff "$man/adcgs-enc.1" - >&2; then
     fault "adcgs-enc.1: its settings (<) are not those of the program (>); make man-update writes them"
 fi
-command -v groff >/dev/null || echo "skipped: warnings of the pages: no groff"
+command -v groff >/dev/null || echo "skipped: warnings about the pages: no groff"
 [ "$faults" -eq 0 ]

@@ -1,32 +1,33 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# A sweep on many machines: its list of commands, each obeyed by itself, in any order, twice and again; what is collected of them is
-# what one process makes; of two that want the same, one refuses and names the other. Encoder and evaluation only pretend.
+# A sweep on many machines. Its list of commands is run one by one, in any order and repeatedly; the collected results equal those
+# of one process. Of two runs with the same target one is rejected, with the name of the other. Encoder and evaluation are
+# stand-ins.
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-sweep
 . "${srcdir:-.}/tests/cli/pretend.sh"
 
-# Charts follow from the scripts that gnuplot draws, which are compared anyway.
+# Charts depend only on gnuplot's scripts, which are compared in any case.
 if [ -n "${ADCGS_FULL:-}" ]; then drawn=$PATH; else PATH=$dir/bin; fi
-# many CODE TEXT COMMAND...: expect, of the copy of the program, and no further if it is not so.
+# many CODE TEXT COMMAND...: like expect, for the copied adcgs-sweep; ends the test on a failure.
 many()
 {
     expect "$1" "$2" "$dir/adcgs-sweep" "${@:3}"
     [ $failed -eq 0 ] || exit 1
 }
-# obey FILE: each of its lines by a shell of its own, the last first.
+# obey FILE: run each line in its own shell, the last line first.
 obey()
 {
     while read -r command; do
         sh -c "$command" 2>>"$dir/err" </dev/null || fail "$command: $(cat "$dir/err")"
     done < <(tac "$1")
 }
-# same ONE OTHER: folders of a sweep hold the same files, but for logs, beginnings, and what says of which sweep it is a folder.
+# same ONE OTHER: two folders of a sweep contain the same files, except logs, beginnings and the command of the sweep.
 same() { diff -r -x "*.log" -x "beginning*" -x command.txt "$1" "$2" >"$dir/diff" || fail "not the same: $(head "$dir/diff")"; }
 
 out=$dir/all # expect writes to $dir/out
-# One process, then one for each run: the same tables, charts, page and streams. Nobody begins together with others.
+# One process, then one process for each run: the same tables, charts, page and streams. Separate processes share no beginning.
 whole=(--lambda 1,2,4 --seeds 1,2 --ablation --grid "k=5,10" --preset fast --fixed --set depth=10)
 touch "$dir/views" "$dir/moving"
 sweep "${whole[@]}"
@@ -45,19 +46,19 @@ obey "$dir/list"
 calls $runs 0 "--resume\|--beginning"
 many 0 "lambda-1-k-5-seed-1: .* (from an earlier sweep)" --collect "$out"
 same "$dir/one" "$out"
-[ "$(ls "$out"/*.running* 2>/dev/null)" = "" ] || fail "who was at it is still said: $(ls "$out")"
+[ "$(ls "$out"/*.running* 2>/dev/null)" = "" ] || fail "claims remain: $(ls "$out")"
 
-# Again: nothing is run; one process that goes on finds everything, and says the same.
+# Again: no run is repeated. A single process that resumes finds all results, and reports the same.
 obey "$dir/list"
 sweep "${whole[@]}" --resume --list
 [ $got -eq 0 ] && [ ! -s "$dir/report" ] || fail "finished runs are listed: $(cat "$dir/report")"
 sweep "${whole[@]}" --resume
-[ $got -eq 0 ] || fail "one process behind many: $(cat "$dir/err")"
+[ $got -eq 0 ] || fail "one process after many: $(cat "$dir/err")"
 calls 0
 same "$dir/one" "$out"
 rm "$dir/views" "$dir/moving"
 
-# What a shell might obey is in quotes, in the list and in what --collect goes by.
+# Characters that a shell interprets are quoted in the list, and in the file that --collect reads.
 mkdir "$dir/it's a \$scene"
 out="$dir/two  blanks"
 many 0 '' "$dir/it's a \$scene" -o "$out" -l 1 --yardsticks none --list
@@ -65,7 +66,7 @@ obey "$dir/out"
 many 0 '' --collect "$out" -q
 grep -q '"scene": ".*/it.s a \$scene"' "$out/sweep.json" || fail "another scene: $(cat "$out/sweep.json")"
 
-# Some are finished: the rest is named, and so are who is at it and where it failed, which goes on from there.
+# Some runs are finished. The missing ones are reported; a running or failed one with its process or log. A failed run resumes.
 out=$dir/some
 : >"$dir/calls"
 sweep --lambda 1,2,666 --yardsticks none --list
@@ -73,26 +74,27 @@ sed -n 1p "$dir/report" | sh 2>"$dir/err" || fail "one of them: $(cat "$dir/err"
 third=$(sed -n 3p "$dir/report")
 for k in 1 2; do
     sh -c "$third" 2>"$dir/err"
-    [ $? -eq 4 ] || fail "a failing encoder goes unnoticed: $(cat "$dir/err")"
+    [ $? -eq 4 ] || fail "a failing encoder is no error: $(cat "$dir/err")"
 done
 calls 3 1 "--resume $out/lambda-666.partial"
 "$dir/adcgs-sweep" --collect "$out" >"$dir/report" 2>"$dir/err"
-[ $? -eq 1 ] || fail "not all are there: $(cat "$dir/err")"
+[ $? -eq 1 ] || fail "missing runs are no error: $(cat "$dir/err")"
 line 'lambda-1: 64000 bytes' "$dir/err"
 line 'lambda-2: not begun' "$dir/err"
 line "lambda-666: begun, not finished, and no process works on it; see $out/lambda-666.log" "$dir/err"
 [ "$(wc -l <"$out/sweep.csv")" -eq 2 ] || fail "expected one point: $(cat "$out/sweep.csv")"
 sweep --lambda 1,2,666 --yardsticks none --list --resume
-[ "$(wc -l <"$dir/report")" -eq 2 ] || fail "expected what is missing: $(cat "$dir/report")"
+[ "$(wc -l <"$dir/report")" -eq 2 ] || fail "expected the missing runs: $(cat "$dir/report")"
 
-# A beginning that one process left is used. What is started by mpirun or srun is no rank for the encoder.
+# A beginning left by another process is used. The encoder started by mpirun or srun does not become a rank.
 out=$dir/begun
 sweep --lambda 1,2 --yardsticks none
 : >"$dir/calls"
 OMPI_COMM_WORLD_SIZE=2 PMIX_RANK=1 many 0 '' "$dir/scene" -o "$out" --lambda 1,2,4 --yardsticks none --run lambda-4
 calls 1 1 "--resume $out/beginning.checkpoint"
 
-# Two at one run, two at one folder: the second refuses, by name, and what is there stays. Others, and --collect, go on.
+# Two processes for one run or one folder: the second is rejected with the name of the first, and results stay. Other runs, and
+# --collect, continue.
 out=$dir/claims
 host=$(uname -n)
 sweep --lambda 1,2 --yardsticks none --list
@@ -108,11 +110,11 @@ many 3 "$name" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none --run lambd
 many 3 "$name" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none
 calls 0
 "$dir/adcgs-sweep" --collect "$out" -q >"$dir/report" 2>"$dir/err"
-[ $? -eq 1 ] || fail "--collect beside a run: $(cat "$dir/err")"
+[ $? -eq 1 ] || fail "--collect during a run: $(cat "$dir/err")"
 line "lambda-1: not finished: .*$name" "$dir/err"
 line 'lambda-2: not begun' "$dir/err"
 
-# kill -9 leaves that behind, and nobody minds.
+# kill -9 leaves the claim, and later runs ignore it.
 kill -KILL -- "-$first"
 wait $first 2>/dev/null
 [ -e "$out/lambda-1.running" ] || fail "kill -9 removes files"
@@ -121,9 +123,9 @@ rm "$dir/slow"
 obey "$dir/list"
 calls 2
 many 0 '' --collect "$out"
-[ "$(ls "$out"/*.running* 2>/dev/null)" = "" ] || fail "who was at it is still said: $(ls "$out")"
+[ "$(ls "$out"/*.running* 2>/dev/null)" = "" ] || fail "claims remain: $(ls "$out")"
 
-# Of another machine it counts until it has not been touched for long. No more is known than what is there.
+# A claim of another machine is valid until it has not been touched for long. Messages use only the content of the claim.
 echo 'node7 17 2026-01-01T00:00:00Z other/pid:[1]' >"$out/lambda-1.running"
 rm "$out/lambda-1.json"
 one=("$dir/scene" -o "$out" --lambda 1,2 --yardsticks none --run lambda-1)
@@ -135,17 +137,17 @@ many 0 'lambda-1: 64000 bytes' "${one[@]}"
 : >"$out/lambda-1.running"
 many 3 'another run has lambda-1: process 0 on ?, since' "${one[@]}"
 echo "$host 999999999 2026-01-01T00:00:00Z" >"$out/lambda-1.running"
-many 0 'lambda-1: 64000 bytes' "${one[@]}" # no such process here, whichever it was
+many 0 'lambda-1: 64000 bytes' "${one[@]}" # any process with this number has ended
 [ ! -e "$out/lambda-1.running" ] || fail "it stays when it is done"
 
-# Whoever has the folder has all its runs. What was taken for dead and is not finds another's.
+# A claim of the folder includes all runs. A run whose claim was taken over by mistake detects it at its end.
 for taken in sweep:"${one[*]}" tables:"--collect $out"; do
     echo 'node7 17 2026-01-01T00:00:00Z other/pid:[1]' >"$out/${taken%%:*}.running"
     # shellcheck disable=SC2086
     many 3 "${taken%%:*}.running: another run has ${taken%%:*}: process 17 on node7" ${taken#*:}
     many 3 "${taken%%:*}.running: another run has ${taken%%:*}: process 17 on node7" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none
     rm "$out/${taken%%:*}.running"
-    [ ! -e "$out/lambda-1.running" ] && [ ! -e "$out/sweep.running" ] || fail "refused, and still at it: $(ls "$out")"
+    [ ! -e "$out/lambda-1.running" ] && [ ! -e "$out/sweep.running" ] || fail "rejected, but a claim remains: $(ls "$out")"
 done
 rm "$out/lambda-1.json"
 touch "$dir/slow"
@@ -158,7 +160,7 @@ wait $!
 [ $? -eq 3 ] && grep -q "$out/lambda-1.running: another process has taken over lambda-1" "$dir/slow.err" || fail "$(cat "$dir/slow.err")"
 grep -q node7 "$out/lambda-1.running" || fail "another's is gone"
 
-# What it cannot be asked for, and folders that are none.
+# Invalid combinations of options, and folders that are not those of a sweep.
 many 2 '--run lambda-3: expected one of the runs' "$dir/scene" -o "$out" -l 1 --run lambda-3
 many 2 'expected one of them' "$dir/scene" -o "$out" -l 1 --run lambda-1 --list
 many 2 '--jobs has no effect with --list' "$dir/scene" -o "$out" -l 1 -j 2 --list

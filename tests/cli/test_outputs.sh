@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Where programs write: devices that are full, limits, modes, links, one file for two outputs; and where modules are looked for.
+# Output of programs: full devices, limits, file modes, links, one file for two outputs; and the folder of modules.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-info adcgs-enc adcgs-eval adcgs-sweep adcgs-conform adcgs-demo-scene adcgs-demo-grid
@@ -8,7 +8,7 @@ vectors=$(cd "${srcdir:-.}/conformance" && pwd)
 tiny_stream 40
 s=$dir/s.adcgs
 
-# full TEXT COMMAND...: leaves with 3 and one line that has TEXT, since a device is full.
+# full TEXT COMMAND...: the command exits with 3 and one line with TEXT, since a device is full.
 full()
 {
     text=$1
@@ -16,7 +16,7 @@ full()
     expect 3 "^adcgs-.*: .*$text.*No space left on device$" "$@"
 }
 
-# printed COMMAND...: the same of standard output.
+# printed COMMAND...: the same for standard output.
 printed()
 {
     full "standard output: cannot write: " sh -c '"$@" >/dev/full' sh "$@"
@@ -45,7 +45,7 @@ if [ -w /dev/full ]; then
     printed ./adcgs-enc --set list
     printed ./adcgs-enc "$dir/scene" -o "$dir/x.adcgs" --preset draft --iterations 10 --json --quiet
 
-    # Names that stand for the device, with the extensions that programs go by.
+    # Links to the device, with the extensions by which programs choose a format.
     for extension in png jpg exr ppm tif sgi y4m raw mp4 ply drc json xml csv svg; do
         ln -s /dev/full "$dir/full.$extension"
     done
@@ -70,19 +70,19 @@ if [ -w /dev/full ]; then
         expect 3 "/dev/full: not a regular file" ./adcgs-enc "$dir/scene" $option /dev/full --preset draft --iterations 10
     done
     full "full.png: cannot write: " ./adcgs-demo-grid "$s" "$dir/scene" -o "$dir/full.png"
-    [ -c /dev/full ] || bad "/dev/full is no device any more"
+    [ -c /dev/full ] || bad "/dev/full is not a device any more"
 fi
 
-# A file that may not grow is an error, not the end of the program, and the old one stays.
+# A limit on the size of files is an error, not the end of the program, and the old file stays.
 for extension in png jpg ppm exr y4m; do
     echo old >"$dir/limited.$extension"
     expect 3 "limited.$extension: cannot write: File too large" \
         sh -c 'ulimit -f 1; exec "$@"' sh ./adcgs-dec "$s" --time 0 --size 300x300 -o "$dir/limited.$extension"
     [ "$(cat "$dir/limited.$extension")" = old ] || bad "$extension: the old file is lost at a limit"
 done
-[ -z "$(find "$dir" -name '*tmp*')" ] || bad "temporary files are left: $(find "$dir" -name '*tmp*')"
+[ -z "$(find "$dir" -name '*tmp*')" ] || bad "temporary files remain: $(find "$dir" -name '*tmp*')"
 
-# A new file has the mode that the umask leaves; an old one keeps its own. A link is followed.
+# A new file has the mode according to the umask; an existing one keeps its mode. A link is followed.
 mode() { ls -l "$1" | cut -c1-10; }
 mkdir "$dir/links"
 ln -s ../target.png "$dir/links/to.png"
@@ -99,7 +99,7 @@ expect 0 "" sh -c 'umask 077; exec "$@"' sh ./adcgs-dec "$s" --time 0 -o "$dir/l
 [ "$(mode "$dir/target.png")" = -rw-rw-r-- ] || bad "the mode becomes $(mode "$dir/target.png")"
 [ "$(wc -c <"$dir/target.png")" -gt 100 ] && [ -h "$dir/links/to.png" ] || bad "not written through a link"
 
-# Where everybody may lay links, one of another user is not followed, as the kernel does not where it protects links.
+# In a folder where everybody may create links, another user's link is not followed, as in kernels that protect links.
 if [ "$(id -u)" -eq 0 ]; then
     mkdir "$dir/open"
     chmod 1777 "$dir/open"
@@ -115,23 +115,23 @@ else
     echo "skipped: links of other users (not root)"
 fi
 
-# Names as long as they may be.
+# Names of the maximum length.
 long=$(printf 'n%.0s' $(seq 251))
 expect 0 "" ./adcgs-dec "$s" --time 0 -o "$dir/$long.png"
 [ -s "$dir/$long.png" ] || bad "a long name is not written"
 expect 2 "the name of the run's state, with its suffix, is longer than 255 bytes" ./adcgs-enc "$dir/scene" -o "$dir/$long" --iterations 10
 
-# A pipe is waited for until somebody reads it; a signal ends that.
+# Writing to a pipe waits until it has a reader; a signal ends the wait.
 mkfifo "$dir/pipe.png"
 timeout -k 60 1 ./adcgs-dec "$s" --time 0 -o "$dir/pipe.png" >"$dir/out" 2>"$dir/err"
-[ $? -eq 124 ] || { bad "SIGTERM is not heard while nobody reads a pipe"; cat "$dir/err"; }
+[ $? -eq 124 ] || { bad "SIGTERM has no effect while a pipe has no reader"; cat "$dir/err"; }
 { sleep 0.3; cat "$dir/pipe.png" >"$dir/read.png"; } &
 expect 0 "" ./adcgs-dec "$s" --time 0 -o "$dir/pipe.png"
 wait $!
 expect 0 "" ./adcgs-dec "$s" --time 0 -o "$dir/straight.png"
-cmp "$dir/read.png" "$dir/straight.png" || bad "another picture through a pipe"
+cmp "$dir/read.png" "$dir/straight.png" || bad "another image through a pipe"
 
-# A stream under a video's name.
+# A stream with the extension of a video.
 expect 0 "x.mp4: this file will hold an adcgs stream, not mp4" ./adcgs-enc "$dir/scene" -o "$dir/x.mp4" --preset draft \
     --set stereo=0 --iterations 10
 
@@ -142,9 +142,9 @@ for other in "$dir/links/two" "$dir/./links/two" "$dir/links/also"; do
     expect 2 "same file" ./adcgs-enc "$dir/scene" -o "$dir/links/two" --log "$other" --preset draft --iterations 10
     expect 2 "same file" ./adcgs-enc "$dir/scene" -o "$dir/links/two" --checkpoint "$other" --preset draft --iterations 10
 done
-[ ! -e "$dir/links/two" ] || bad "something is written in spite of two outputs in one file"
+[ ! -e "$dir/links/two" ] || bad "output in spite of two outputs in one file"
 
-# A program looks for modules where it is installed, not in a folder .libs beside it.
+# A program searches modules in its installation, not in a folder .libs next to it.
 if [ -f .libs/adcgs_oiio.so ]; then
     mkdir -p "$dir/usr/bin/.libs"
     cp adcgs-dec "$dir/usr/bin"
@@ -153,7 +153,7 @@ if [ -f .libs/adcgs_oiio.so ]; then
     before=$?
     cp .libs/adcgs_oiio.so "$dir/usr/bin/.libs"
     "$dir/usr/bin/adcgs-dec" "$s" --time 0 -o "$dir/m.tif" >"$dir/out" 2>&1
-    [ $? -eq $before ] || bad "a module is taken from .libs beside the program"
+    [ $? -eq $before ] || bad "a module is loaded from .libs next to the program"
     mkdir -p "$dir/usr/lib"
     mv "$dir/usr/bin/.libs" "$dir/usr/lib/adcgs"
     expect 0 "" "$dir/usr/bin/adcgs-dec" "$s" --time 0 -o "$dir/m.tif"

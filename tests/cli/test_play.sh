@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-dec --play, driven by scripts: without a display by SDL's dummy driver, and on a display of Xvfb where there is one.
+# adcgs-dec --play, controlled by scripts: without a display through SDL's dummy driver, and on a display of Xvfb if available.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-enc adcgs-demo-scene
@@ -8,7 +8,7 @@ dec=$PWD/adcgs-dec
 
 tiny_stream 60
 
-# play CODE TEXT SCRIPT OPTIONS...: play with a script from standard input; exit code, and what standard error says.
+# play CODE TEXT OPTIONS...: play with a script from standard input; checks the exit code, and TEXT on standard error.
 play()
 {
     code=$1 text=$2
@@ -21,7 +21,7 @@ play()
     [ "$(wc -l <"$dir/err")" -eq "$([ "$code" -eq 0 ] && echo 0 || echo 1)" ] || { bad "not one line of message"; cat "$dir/err"; }
 }
 
-# same PICTURE OPTIONS...: a picture of the player is, byte by byte, what adcgs-dec renders with these options.
+# same PICTURE OPTIONS...: an image of the player equals byte by byte the one that adcgs-dec renders with these options.
 same()
 {
     picture=$1
@@ -34,7 +34,7 @@ differ() { ! cmp -s "$dir/$1" "$dir/$2" || bad "$1 and $2 are the same, on $wher
 pictures()
 {
     rm -f "$dir"/*.png "$dir"/*.exr
-    # Unmoved, the player shows what adcgs-dec renders: in the file, and in the window's own pixels.
+    # Without interaction the player shows the frame of adcgs-dec, both in a screenshot and in the window's pixels.
     play 0 "" --size 256x256 --time 0.1 --camera 1 <<'END'
 expect size 256x256
 expect time 0.1
@@ -57,14 +57,14 @@ END
     same grab.png --camera 1 --time 0.1 --size 256x256
     same s-000001.exr --camera 1 --time 0.1 --size 256x256
     same s-000001.png --camera 1 --time 0.1 --size 256x256
-    # Two at once, and leaving: both are made.
+    # Two screenshots at once, followed by quitting: both are written.
     same s-000002.png --camera 1 --time 0.1 --size 256x256
     same s-000002.exr --camera 1 --time 0.1 --size 256x256
     differ grab.png said.png
 
     # Moved by the mouse and back by a key; cameras, layers, time bar, another size of the window.
     play 0 "" --size 256x192 --time 0 <<'END'
-# what is begun with
+# initial state
 wait 1 frames
 screenshot first.png
 expect distance 4.2 4.2
@@ -130,7 +130,7 @@ expect help 0
 screenshot large.png
 key escape
 END
-    cmp -s "$dir/first.png" "$dir/back.png" || bad "reset does not lead back, on $where"
+    cmp -s "$dir/first.png" "$dir/back.png" || bad "reset does not restore the view, on $where"
     for other in orbit pan near second coarse last large overlay; do
         differ first.png $other.png
     done
@@ -142,7 +142,7 @@ END
 
 behaviour()
 {
-    # Layers and times are adcgs-dec's.
+    # Layers and times are those of adcgs-dec.
     play 0 "" --size 128x128 --time 0 --layers 2 <<'END'
 expect layers 2
 screenshot two.png
@@ -156,7 +156,7 @@ END
     same three.png --camera 0 --time 0 --layers 3 --size 128x128
     same end.png --camera 0 --time 0.2333333333 --layers 3 --size 128x128
 
-    # Time goes on by the clock on the wall, whatever is drawn.
+    # Time advances by the real clock, independent of rendering.
     play 0 "" --size 192x192 <<'END'
 expect playing 1
 expect loop 1
@@ -185,7 +185,7 @@ expect speed 0.25
 quit
 END
 
-    # Flying: the camera goes where it looks, as long as the key is held.
+    # Flying: the camera moves in its viewing direction while the key is held.
     play 0 "" --size 128x128 --time 0 <<'END'
 screenshot ground.png
 key f
@@ -202,7 +202,7 @@ quit
 END
     differ ground.png flown.png
 
-    # What does not hold, and what is no script.
+    # Expectations that fail, and invalid scripts.
     printf 'wait 1 frames\n\nexpect time 0.5\nquit\n' | play 1 "^adcgs-dec: script: line 3: time is 0.1, expected 0.5$" --time 0.1
     printf 'expect weather 1\nquit\n' | play 2 "^adcgs-dec: script: line 1: "
     printf 'quit\njump\n' | play 2 "^adcgs-dec: script: line 2 is no command"
@@ -210,7 +210,7 @@ END
     printf 'screenshot x.foo\nquit\n' | play 5 "^adcgs-dec: script: line 1: .*x.foo"
 }
 
-# frames Y4M BYTES: the MD5 of each of its frames, of so many bytes, those that are equal to the one before left out.
+# frames Y4M BYTES: the MD5 of each frame (of BYTES bytes), without those that equal the previous one.
 frames()
 {
     rm -rf "$dir/split"
@@ -222,7 +222,7 @@ frames()
 files()
 {
     rm -f "$dir"/s-0* "$dir"/*.y4m
-    # Key frames are a path, written after each; the frame at a key is what was seen there.
+    # Key frames form a path, written after each key. The frame at a key equals the one shown there.
     play 0 "" --size 128x96 --time 0.1 --camera 1 <<'END'
 key b
 expect keys 0
@@ -248,11 +248,12 @@ END
     cmp "$dir/key0.png" "$dir/first.png" || bad "the path's first frame, on $where"
     cmp "$dir/key1.png" "$dir/second.png" || bad "the path's last frame, on $where"
     [ ! -e "$dir/key2.png" ] || bad "keys a frame apart have frames between them"
-    # All taken back: no file.
+    # All keys removed: no file.
     printf 'key k\nkey shift-k\nexpect keys 0\nquit\n' | play 0 "" --time 0
-    [ ! -e "$dir/s-000002.json" ] || bad "a path without keys is left"
+    [ ! -e "$dir/s-000002.json" ] || bad "a file of a path without keys"
 
-    # A video has each frame once or more, whatever drawing takes, at all of the resolution: until the key, or the end.
+    # A video has each frame at least once, at full resolution, however long rendering takes. It ends with the key, or with the
+    # player.
     play 0 "" --size 128x96 --time 0:0.2333333333 <<'END'
 key space
 key home
@@ -281,7 +282,7 @@ END
     printf 'record no/such.y4m\nquit\n' | play 3 "^adcgs-dec: script: line 1: .*no/such.y4m"
     printf 'record x.png\nquit\n' | play 2 "^adcgs-dec: script: line 1: x.png"
 
-    # The whole screen, and back.
+    # Full screen, and back.
     play 0 "" --size 128x96 --time 0 <<'END'
 key f11
 expect full 1
@@ -306,18 +307,18 @@ pictures
 behaviour
 files
 
-# A user who says nothing: the player goes on until a signal comes, also when its script has ended.
+# Without user input the player runs until a signal, also after the end of its script.
 echo "wait 1 frames" >"$dir/script"
 timeout -s TERM 3 $dec "$dir/s.adcgs" --play --script "$dir/script" 2>"$dir/err"
-[ $? -eq 124 ] || bad "the player leaves by itself"
+[ $? -eq 124 ] || bad "the player ends by itself"
 
-# Without a display, without the module, and what goes with --play.
+# Errors: no display, no module, options that exclude --play.
 expect 3 "s.adcgs: no display to play on: " env -u DISPLAY SDL_VIDEODRIVER=x11 $dec "$dir/s.adcgs" --play
-if [ ! -e /dev/dri ]; then # else SDL might find a display in the bare console
+if [ ! -e /dev/dri ]; then # else SDL might use the console as a display
     expect 3 "s.adcgs: no display to play on: none" \
         env -u DISPLAY -u XDG_RUNTIME_DIR -u WAYLAND_SOCKET -u SDL_VIDEODRIVER $dec "$dir/s.adcgs" --play
 fi
-# A view that nobody can draw: a script does not wait for its picture.
+# A view that cannot be rendered: a script does not wait for its image.
 expect 2 "script: line 1: camera: focal lengths" timeout 60 \
     $dec "${srcdir:-.}/conformance/vectors/good-sys-cams-extremes.adcgs" --play --script "$dir/script"
 if [ -f .libs/adcgs_play.so ]; then
@@ -337,11 +338,11 @@ expect 2 "nobody" $dec "$dir/s.adcgs" --play --camera nobody
 unset SDL_VIDEODRIVER SDL_RENDER_DRIVER
 if xvfb-run -a true >/dev/null 2>&1; then
     where="a display" display="xvfb-run -a"
-    # Drivers of displays leak; our own leaks were looked for above.
+    # Display drivers have leaks; the player's own leaks were tested above.
     ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
     export ASAN_OPTIONS
     pictures
 else
-    echo "skipped: pictures on a display: xvfb-run does not work here"
+    echo "skipped: images on a display: xvfb-run does not work here"
 fi
 exit $failed

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc --preview keeps a picture of how far it is, on which nothing depends. Runs in the build folder.
+# adcgs-enc --preview writes an image of the progress, without any effect on the result. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-demo-scene
 
@@ -16,24 +16,24 @@ likeness()
              END { printf "%d\n", 10 * log(255 * 255 * n / sum) / log(10) }'
 }
 
-# The picture that is there at the end shows a view twice; the stream is what it is without.
+# The final image shows a view twice; the stream is the same as without a preview.
 # shellcheck disable=SC2086
 {
     expect 0 "" $run -o "$dir/without.adcgs" -q
     expect 0 "" $run -o "$dir/with.adcgs" --preview "$dir/p.ppm" -q
 }
 cmp "$dir/without.adcgs" "$dir/with.adcgs" || bad "a preview changes the stream"
-[ "$(head -c 2 "$dir/p.ppm")" = P6 ] || bad "no PPM"
+[ "$(head -c 2 "$dir/p.ppm")" = P6 ] || bad "the preview is not a PPM"
 like=$(likeness "$dir/p.ppm")
 [ "$like" -ge 18 ] && [ "$like" -le 40 ] || bad "its halves differ by $like dB"
-[ -z "$(find "$dir" -name 'p.ppm?*')" ] || bad "left behind: $(find "$dir" -name 'p.ppm?*')"
+[ -z "$(find "$dir" -name 'p.ppm?*')" ] || bad "other files remain: $(find "$dir" -name 'p.ppm?*')"
 
-# It is there before training has begun, white where there is no model, and tells more as time goes by.
+# The image exists before training begins, white since there is no model, and improves with time.
 # shellcheck disable=SC2086
 expect 2 "before training began" $run -o "$dir/x.adcgs" --preview "$dir/early.ppm" --time-limit 0.001
-[ "$(likeness "$dir/early.ppm")" -lt "$like" ] || bad "an early picture is as good as the last"
+[ "$(likeness "$dir/early.ppm")" -lt "$like" ] || bad "an early image is as good as the last"
 
-# What it cannot be is said before training; what fails later is said once, and the run goes on.
+# An invalid path is an error before training. A later failure is reported once, and the run continues.
 # shellcheck disable=SC2086
 {
     expect 2 "extension that gives the format" $run -o "$dir/x.adcgs" --preview "$dir/nothing"

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# A run whose images have no room does without it, and says so before training; one that fails in its end saves its state,
-# says how to continue, and then has the same bytes as a run without the failure. Runs in the build folder.
+# A run without space for its images continues without it, and reports it before training. A run that fails at its end saves its
+# state and prints how to continue; it then gives the bytes of a run without the failure. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-demo-scene tests/cli/fail-nth
 scene=$dir/scene
@@ -12,27 +12,26 @@ run="./adcgs-enc $scene --preset draft --max-anchors 300 --set stereo=0 --iterat
 expect 0 "" $run -o "$dir/good.adcgs"
 grep -q "images at full size" "$dir/err" && bad "room is told of where there is enough"
 
-# A file may have 64 KiB: five images of 12,288 bytes, 8 bits a value.
-# shellcheck disable=SC2086
+# The limit of a file is 64 KiB: five images of 12,288 bytes, 8 bits a value.
 expect 0 "take about 294.9 kB: 0 bytes fit into memory, 61.4 kB into a file in $dir; 19 of 24 images will be decoded again" \
     env TMPDIR="$dir" sh -c 'ulimit -f 128; exec "$@"' sh $run -o "$dir/small.adcgs" --memory 1
-cmp "$dir/good.adcgs" "$dir/small.adcgs" || bad "images without room make another file"
+cmp "$dir/good.adcgs" "$dir/small.adcgs" || bad "another file with images on disk"
 # shellcheck disable=SC2086
 expect 0 "24 of 24 images will be decoded again" env TMPDIR="$dir/nowhere" $run -o "$dir/small.adcgs" --memory 1
 grep -q "nowhere: No such file" "$dir/err" || bad "no word of a folder that is not there"
-cmp "$dir/good.adcgs" "$dir/small.adcgs" || bad "images without a folder make another file"
+cmp "$dir/good.adcgs" "$dir/small.adcgs" || bad "another file with images decoded again"
 
-# goes_on FILE STATE: the command that was given, and its file.
+# goes_on FILE STATE: the run printed the state's path; resumed from it, it gives the same file.
 goes_on()
 {
     grep -q -- "the state is saved at iteration 12; continue with the same command and --resume $2" "$dir/err" ||
-        { bad "no word of $2"; cat "$dir/err"; return; }
+        { bad "no message about $2"; cat "$dir/err"; return; }
     # shellcheck disable=SC2086
     expect 0 "" $run -o "$1" --resume "$2"
-    cmp "$dir/good.adcgs" "$1" || bad "a run that went on from $2 has another file"
+    cmp "$dir/good.adcgs" "$1" || bad "another file after resuming from $2"
 }
 
-# The folder takes nothing any more from some call on: once, and then for good, when another folder has the state.
+# From the last call on the folder cannot be written: first only once, then always, so that the state goes to another folder.
 w=$dir/w tmp=$dir/tmp
 mkdir "$w" "$tmp"
 # shellcheck disable=SC2086
@@ -51,10 +50,10 @@ case $? in
         if [ -z "$rest" ]; then goes_on "$w/x.adcgs" "$w/x.adcgs.checkpoint"; else goes_on "$w/x.adcgs" "$tmp/x.adcgs.checkpoint"; fi
     done
     ;;
-*) bad "without a failure"; cat "$dir/err" ;;
+*) bad "fail-nth without a failing call"; cat "$dir/err" ;;
 esac
 
-# A part of a scene in segments cannot be written: there is a folder of that name.
+# A segment of a scene cannot be written, since a folder has its name.
 state=$dir/cut.adcgs.checkpoint
 mkdir "$state.1.adcgs"
 # shellcheck disable=SC2086
@@ -62,7 +61,7 @@ $run -o "$dir/cut.adcgs" --segment 0.15 >"$dir/out" 2>"$dir/err"
 got=$?
 [ $got -eq 3 ] || { bad "exit code $got of segments, expected 3"; cat "$dir/err"; }
 grep -q -- "saved at iteration 12 of segment 1 of [2-9]; continue with the same command and --resume $state" "$dir/err" ||
-    { bad "no word of the segment's state"; cat "$dir/err"; }
+    { bad "no message about the segment's state"; cat "$dir/err"; }
 rmdir "$state.1.adcgs"
 # shellcheck disable=SC2086
 expect 0 "" $run -o "$dir/cut.adcgs" --segment 0.15 --resume "$state"

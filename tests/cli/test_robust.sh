@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# doc/robust.sh: its table has a row for each scene and mechanism, a planted loss of the default is marked and fails, a mechanism that
-# has no switch is no failure, a second call trains nothing.
+# doc/robust.sh: its table has a row for each scene and mechanism; a planted loss of the default is marked and fails; a mechanism
+# without a switch is no failure; a second call trains nothing.
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-demo-scene adcgs-enc adcgs-eval
@@ -20,7 +20,7 @@ robust() { sh "${srcdir:-.}/doc/robust.sh" >"$dir/out" 2>"$dir/err"; }
 robust && bad "the planted loss does not fail"
 table=$dir/robust/test-10/robust.md
 for scene in one two; do
-    grep -q "^| $scene | [0-9.]* | [+-][0-9.]* | \*\*+[0-9.]*\*\* | no switch |$" "$table" || bad "$scene: not as planted"
+    grep -q "^| $scene | [0-9.]* | [+-][0-9.]* | \*\*+[0-9.]*\*\* | no switch |$" "$table" || bad "$scene: wrong cells"
     [ "$(grep -c "^| $scene | \(default\|nothing\|planted\) | [0-9.]* |.*| [0-9]* | [0-9]* |$" "$table")" -eq 3 ] || bad "$scene: rows"
 done
 grep -q '^| one | nothing .* | +0\.00 |' "$table" || bad "the same options give another result"
@@ -28,12 +28,12 @@ grep -q '^2 of 4 cells are marked\.$' "$table" || bad "the count"
 grep -q 'no .*/no-such-folder, left out' "$dir/err" || bad "a data set that is not there"
 [ $failed -eq 0 ] || cat "$table" "$dir/err"
 
-# The whole is present by now; parts can be asked for.
+# All results exist by now; a part can be selected.
 cp "$table" "$dir/before"
 robust
 cmp -s "$table" "$dir/before" && ! grep -q '^robust: one' "$dir/err" || bad "it does not resume"
 SCENES=two MECHANISMS=nothing robust || { bad "a part without the planted loss"; cat "$dir/out" "$dir/err"; }
-grep -q '^0 of 1 cells' "$table" && ! grep -q planted "$table" || bad "not the part"
+grep -q '^0 of 1 cells' "$table" && ! grep -q planted "$table" || bad "not only the selected part"
 
 # A failed run is reported, and fails.
 echo 'without wrong --set stereo=-1' >>"$dir/list"

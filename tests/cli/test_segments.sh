@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc --segment: a stream of several segments, the same however often the run was stopped, and what is left meanwhile.
+# adcgs-enc --segment: a stream of several segments, the same however often the run was interrupted; and the files in between.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-dec adcgs-info adcgs-demo-scene
@@ -22,13 +22,13 @@ same() { cmp "$dir/$1.adcgs" "$dir/$2.adcgs" || bad "$3"; }
 spans() { ./adcgs-info "$dir/$1" | sed -n 's/^segment \([0-9]*\): \([0-9.]*\) \.\. \([0-9.]*\) s,.*/\1 \2 \3/p' | xargs; }
 left() { find "$dir" -name "$1*" | sed "s|.*/$1||" | sort | xargs; }
 
-# Moments 0, 1/30, .., 7/30 s; cut where one is nearest to a multiple. Segments touch, and nothing else is left.
+# Timestamps 0, 1/30, .., 7/30 s; cuts are at those nearest to a multiple. Segments adjoin, and no other files remain.
 enc two --segment 0.1 --threads 1 --json --log "$dir/two.log"
 [ "$(spans two.adcgs)" = "0 0 0.1 1 0.1 0.233333" ] || { bad "spans"; spans two.adcgs; }
-grep -q '"segments": 2,' "$dir/two.out" || { bad "--json does not tell how many"; cat "$dir/two.out"; }
+grep -q '"segments": 2,' "$dir/two.out" || { bad "--json: number of segments"; cat "$dir/two.out"; }
 grep -q '"segment":1,.*"iteration":200,' "$dir/two.log" && grep -q '"segment":2,.*"iteration":200,' "$dir/two.log" ||
-    { bad "the log does not tell segments"; cat "$dir/two.log"; }
-[ "$(left two.adcgs)" = "" ] || bad "left behind: $(left two.adcgs)"
+    { bad "the log does not name segments"; cat "$dir/two.log"; }
+[ "$(left two.adcgs)" = "" ] || bad "other files remain: $(left two.adcgs)"
 enc threads --segment 0.1 --threads 3
 same two threads "another stream with three threads"
 enc three --segment 0.07 --iterations 60
@@ -37,15 +37,15 @@ for t in 0 0.1 0.15 0.23; do
     ./adcgs-dec "$dir/two.adcgs" --camera 0 -t $t --md5 >/dev/null 2>"$dir/err" || { bad "time $t"; cat "$dir/err"; }
 done
 
-# The second is predicted from the first, unless all are keys.
+# The second segment is predicted from the first, unless all are keys.
 ./adcgs-info "$dir/two.adcgs" >"$dir/out"
 grep -q '^  predicted from segment 0: ' "$dir/out" || { bad "nothing is predicted"; cat "$dir/out"; }
 enc keys --segment 0.1 --key 0
 ! ./adcgs-info "$dir/keys.adcgs" | grep -q predicted || bad "--key 0 has a predicted segment"
-[ "$(stat -c %s "$dir/two.adcgs")" -lt "$(stat -c %s "$dir/keys.adcgs")" ] || bad "predicting does not pay"
+[ "$(stat -c %s "$dir/two.adcgs")" -lt "$(stat -c %s "$dir/keys.adcgs")" ] || bad "prediction saves no bytes"
 expect 2 "needs --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --key 1
 
-# One byte of the second is wrong: it is refused by name, but not where it is not asked for; the first can be shown, and saved.
+# One byte of the second segment is wrong. It is rejected by name, but only if it is needed; the first can be rendered, and saved.
 cp "$dir/two.adcgs" "$dir/hurt.adcgs"
 at=$(./adcgs-info --bits "$dir/two.adcgs" | awk '$1 == "FEA0" && $2 == 1 { print $3 + 40 }')
 printf '\377' | dd of="$dir/hurt.adcgs" bs=1 seek="$at" conv=notrunc 2>/dev/null
@@ -57,56 +57,57 @@ expect 2 "needs a file" ./adcgs-dec - --conceal --md5
 expect 0 "" ./adcgs-info --check "$dir/two.adcgs"
 ./adcgs-info --repair "$dir/saved.adcgs" "$dir/hurt.adcgs" >"$dir/out"
 [ $? -eq 1 ] && grep -q 'segment 1 is lost' "$dir/out" && grep -q '2 faults; 1 segment can' "$dir/out" ||
-    { bad "--repair does not say what it finds"; cat "$dir/out"; }
-[ "$(spans saved.adcgs)" = "0 0 0.1" ] || bad "what was saved is not the first segment"
+    { bad "report of --repair"; cat "$dir/out"; }
+[ "$(spans saved.adcgs)" = "0 0 0.1" ] || bad "the repaired stream is not the first segment"
 expect 0 "" ./adcgs-info --check "$dir/saved.adcgs"
 expect 2 "exclude other options" ./adcgs-info --check --json "$dir/two.adcgs"
 
-# One that is as long as the scene is none.
+# A segment as long as the scene is a run without segments.
 enc whole --iterations 60
 enc long --iterations 60 --segment 9
 same whole long "a segment longer than the scene changes it"
 
-# One segment instead, where that is neither larger nor worse: that of a run of as many iterations; it is said which was taken.
+# --or-whole takes a single segment if that is neither larger nor worse. It equals a run with as many iterations. A message names
+# the choice.
 expect 2 "needs --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --or-whole
-# better NAME OPTIONS...: which is taken, one or the segments, fits what is said of both.
+# better NAME OPTIONS...: the choice agrees with the figures in the message.
 better()
 {
     enc "$@" --or-whole
     said=$(sed 's/.* segments: \(.*\) bytes, \(.*\) dB; one: \(.*\) bytes, \(.*\) dB: \(.*\) [a-z]* written$/\1 \2 \3 \4 \5/' \
         "$dir/$1.err" | tail -n 4 | grep -E ' (one|the segments)$')
-    echo "$said" | awk '{ exit !(NF > 4 && ($3 <= $1 && $4 > $2 - 0.05) == ($5 == "one")) }' || bad "it is said: $said"
+    echo "$said" | awk '{ exit !(NF > 4 && ($3 <= $1 && $4 > $2 - 0.05) == ($5 == "one")) }' || bad "the message: $said"
 }
 better better --segment 0.1
 enc longer --iterations 400
 case $said in
     *" one") same longer better "another stream than that of a run of as many iterations" ;;
-    *) bad "the tiny scene is no better in one: $said" ;;
+    *) bad "the tiny scene is not better in one segment: $said" ;;
 esac
-# Where segments win (ADCGS_FULL=1), they are what they are without.
+# Where segments are better (ADCGS_FULL=1), they are the same as without --or-whole.
 if [ "${ADCGS_FULL:-}" = 1 ]; then
     enc frozen --segment 0.07 --without deformation,rate --set n_fg=8 --iterations 1000
     better cut --segment 0.07 --without deformation,rate --set n_fg=8 --iterations 1000
     case $said in
         *" the segments") same frozen cut "segments, but others" ;;
-        *) bad "what cannot move is no better in segments: $said" ;;
+        *) bad "a motionless scene is no better in segments: $said" ;;
     esac
 fi
-[ "$(left better.adcgs)" = "" ] || bad "left behind: $(left better.adcgs)"
+[ "$(left better.adcgs)" = "" ] || bad "other files remain: $(left better.adcgs)"
 
-# A run that is stopped in its second segment keeps both, and goes on from there to what never stopping gives.
+# A run interrupted in its second segment keeps both segments. Resumed, it gives the stream of an uninterrupted run.
 # shellcheck disable=SC2086
 interrupt INT "$dir/stop.log" '"segment":2,.*"iteration":100,' ./adcgs-enc "$scene" -o "$dir/stop.adcgs" $short --segment 0.1 \
     --log "$dir/stop.log"
 grep -q "of segment 2 of 2; .*--resume $dir/stop.adcgs.checkpoint" "$dir/stop.err" || { bad "no word of it"; cat "$dir/stop.err"; }
 [ "$(left stop.adcgs)" = ".checkpoint.1.adcgs .checkpoint.2" ] || bad "left: $(left stop.adcgs)"
-[ "$(spans stop.adcgs.checkpoint.1.adcgs)" = "0 0 0.1" ] || bad "the first segment is no stream by itself"
+[ "$(spans stop.adcgs.checkpoint.1.adcgs)" = "0 0 0.1" ] || bad "the first segment is not a stream by itself"
 cp "$dir/stop.adcgs.checkpoint.1.adcgs" "$dir/first"
 cp "$dir/stop.adcgs.checkpoint.2" "$dir/second"
 enc stop --segment 0.1 --resume "$dir/stop.adcgs.checkpoint"
 same two stop "another stream after an interrupt"
-[ "$(left stop.adcgs)" = "" ] || bad "left behind: $(left stop.adcgs)"
-# Killed before anything was saved of the second segment, and as it ended, before the streams were put together.
+[ "$(left stop.adcgs)" = "" ] || bad "other files remain: $(left stop.adcgs)"
+# Killed before anything of the second segment was saved; and killed at its end, before the streams were joined.
 cp "$dir/first" "$dir/base.1.adcgs"
 enc again --segment 0.1 --resume "$dir/base"
 same two again "another stream from the first segment"
@@ -114,9 +115,9 @@ cp "$dir/first" "$dir/base.1.adcgs"
 cp "$dir/second" "$dir/base.2"
 enc again --segment 0.1 --checkpoint "$dir/base" --resume "$dir/base"
 same two again "another stream from both"
-[ "$(left base)" = "" ] || bad "left behind: $(left base)"
+[ "$(left base)" = "" ] || bad "other files remain: $(left base)"
 
-# What is there must be of this run.
+# Existing files have to belong to this run.
 resume="./adcgs-enc $scene -o $dir/x.adcgs --segment 0.1 --resume $dir/base"
 cp "$dir/first" "$dir/base.1.adcgs"
 # shellcheck disable=SC2086
@@ -131,10 +132,10 @@ head -c 500 "$dir/first" >"$dir/base.1.adcgs"
 expect 4 "base.1.adcgs: stream: ends" $resume $short
 rm "$dir/base.1.adcgs"
 
-# Faded in: a segment goes on for as many moments as --fade allows, and a quarter of a segment has; a frame meanwhile is the same
-# from a file that is read where it has to be, from a pipe, and from one that is read whole.
+# Crossfade: a segment is extended as far as --fade allows, at most by a quarter of a segment. A frame in the crossfade is the
+# same from a file read partly, from a pipe, and from a file read completely.
 ./adcgs-demo-scene --scene turn1 --size 40x40 --format ppm -o "$dir/turn" >"$dir/out" 2>&1 || bad "adcgs-demo-scene"
-# fade NAME OPTIONS...: encode that to NAME.adcgs.
+# fade NAME OPTIONS...: encode this scene to NAME.adcgs.
 fade()
 {
     name=$1
@@ -158,14 +159,14 @@ for t in "$at" 0.42 0.45; do
 done
 expect 2 "needs --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --fade 1
 
-# Where nothing is seen to move there are no networks of motion, and the time table, which all segments have, is of zeros.
+# Without detected motion there are no networks of motion. The time table, which all segments have, consists of zeros.
 enc rest --segment 0.1 --set still_below=1000000 --iterations 60
 ./adcgs-info "$dir/rest.adcgs" >"$dir/out"
 [ "$(grep -c '^  Z  *[1-9]' "$dir/out")" -eq 2 ] || { bad "segments without time tables"; cat "$dir/out"; }
 grep -q '2 segments' "$dir/out" && ! grep -q 'F_omega\|F_varpi' "$dir/out" || { bad "a scene at rest"; cat "$dir/out"; }
 ./adcgs-dec "$dir/rest.adcgs" --md5 >/dev/null 2>&1 || bad "a scene at rest does not decode"
 
-# Wrong use.
+# Wrong usage.
 try="./adcgs-enc $scene -o $dir/x.adcgs --segment 0.1"
 expect 2 "from 0.001 to 1e+06" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --segment 0
 for other in "--size 100k" "--uncompressed $dir/raw" "--time-limit 9"; do

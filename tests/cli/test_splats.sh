@@ -5,25 +5,25 @@
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-eval adcgs-enc adcgs-info adcgs-share adcgs-demo-scene
 
-# vertices FILE: how many it declares; size FILE: bytes behind its header.
+# vertices FILE: the number that it declares; size FILE: bytes after its header.
 vertices() { sed -n '/^end_header/q; s/^element vertex //p' "$1"; }
 size() { sed '1,/^end_header$/d' "$1" | wc -c; }
 
 tiny_stream 30
 s=$dir/s.adcgs
 
-# One moment, and a span of them.
+# One timestamp, and a range of them.
 expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/a.ply" --time 0.03
-head -n 3 "$dir/a.ply" | tail -n 1 | grep -q '^comment adcgs .*, time 0.03 s$' || bad "the header names no time"
+head -n 3 "$dir/a.ply" | tail -n 1 | grep -q '^comment adcgs .*, time 0.03 s$' || bad "no time in the header"
 [ "$(vertices "$dir/a.ply")" -gt 10 ] && [ "$(size "$dir/a.ply")" -eq $((68 * $(vertices "$dir/a.ply"))) ] || bad "size of the PLY"
 expect 0 "1 file" sh -c "cat '$s' | ./adcgs-dec - --splats '$dir/b.ply' --time 0.03 --threads 1 --cpu scalar"
 cmp -s "$dir/a.ply" "$dir/b.ply" || bad "splats depend on threads, CPU or source"
 expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/first.ply"
 expect 0 "files" ./adcgs-dec "$s" --splats "$dir/t%03d.ply"
-cmp -s <"$dir/t000.ply" - "$dir/first.ply" || bad "the first moment"
+cmp -s <"$dir/t000.ply" - "$dir/first.ply" || bad "the first timestamp"
 ./adcgs-dec "$s" --md5 >"$dir/md5" 2>/dev/null
 [ "$(find "$dir" -name 't0*.ply' | wc -l)" -eq "$(wc -l <"$dir/md5")" ] || bad "not one file of splats for each frame"
-cmp -s "$dir/t000.ply" "$dir/t002.ply" && bad "nothing moves"
+cmp -s "$dir/t000.ply" "$dir/t002.ply" && bad "all timestamps have the same splats"
 expect 2 "%04d" ./adcgs-dec "$s" --splats "$dir/x.ply" --time 0:1
 expect 2 ".ply" ./adcgs-dec "$s" --splats "$dir/x.obj"
 expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/rest.PLY" --f-rest 3 --time 0.03
@@ -37,7 +37,7 @@ expect 2 "--splats goes with" ./adcgs-dec "$s" --splats "$dir/x.ply" --md5
 expect 2 "--splats goes with" ./adcgs-dec "$s" --splats "$dir/x.ply" --camera 0
 expect 3 "no/x.ply" ./adcgs-dec "$s" --splats "$dir/no/x.ply"
 
-# Other formats, and back as scenes: the views of both are nearly those of the PLY. y is up there.
+# Other formats, also read as scenes: the views of both are nearly those of the PLY. Their y axis is up.
 for format in spz glb sog; do
     ./adcgs-dec "$s" --splats "$dir/a.$format" --time 0.03 2>"$dir/err"
     case $?,$(cat "$dir/err") in
@@ -49,7 +49,7 @@ for format in spz glb sog; do
     cmp -s "$dir/a.$format" "$dir/b.$format" || bad "splats as $format depend on threads or CPU"
     expect 0 "files" ./adcgs-dec "$s" --splats "$dir/t%03d.$format"
     [ "$(find "$dir" -name "t0*.$format" | wc -l)" -eq "$(wc -l <"$dir/md5")" ] || bad "not one $format for each frame"
-    [ $format != sog ] || continue # which is only written
+    [ $format != sog ] || continue # can only be written
     expect 0 "" ./adcgs-enc "$dir/a.$format" -o "$dir/up.adcgs" --preset draft --iterations 10 --scale 8 --threads 2
     ./adcgs-info "$dir/up.adcgs" | grep -q 'y up' || bad "$format: y is not up"
     head -c $(($(wc -c <"$dir/a.$format") - 7)) "$dir/a.$format" >"$dir/cut.$format"
@@ -82,12 +82,12 @@ expect 0 "" ./adcgs-info "$s" --points "$dir/points.drc"
 [ "$(head -c 5 "$dir/points.drc")" = DRACO ] || bad "points as Draco"
 # The encoder reads them back as initial points.
 expect 0 "" ./adcgs-enc "$dir/scene" -o "$dir/third.adcgs" --points "$dir/points.drc" --preset draft --iterations 10 --threads 2
-# Draco is opened when a file needs it, and not before. A build without shared libraries has it inside.
+# Draco is loaded only when a file needs it. A build without shared libraries contains it.
 if [ -f .libs/adcgs_draco.so ]; then
     for program in adcgs-info adcgs-dec adcgs-enc; do
-        ! readelf -d "$program" 2>/dev/null | grep -q 'NEEDED.*draco' || bad "$program loads Draco at once"
+        ! readelf -d "$program" 2>/dev/null | grep -q 'NEEDED.*draco' || bad "$program links Draco"
     done
-    ! readelf -d adcgs-info 2>/dev/null | grep -q 'NEEDED.*\(stdc++\|OpenEXR\)' || bad "adcgs-info needs more than C and jansson"
+    ! readelf -d adcgs-info 2>/dev/null | grep -q 'NEEDED.*\(stdc++\|OpenEXR\)' || bad "adcgs-info links more than C and jansson"
     mkdir "$dir/none"
     expect 5 "x.drc: its points need Draco: no adcgs_draco.so in $dir/none" \
         env ADCGS_MODULES="$dir/none" ./adcgs-info "$s" --points "$dir/x.drc"
@@ -96,7 +96,7 @@ if [ -f .libs/adcgs_draco.so ]; then
     expect 0 "" env ADCGS_MODULES="$dir/none" ./adcgs-info "$s"
 fi
 
-# A file that is no scene, or no stream, is refused with its kind.
+# A file that is not a scene, or not a stream, is rejected with its kind.
 mkdir "$dir/sequence" && cp "$dir/t000.ply" "$dir/t001.ply" "$dir/sequence"
 expect 5 "sequence: a folder of 2 files of splats (t000.ply): sequences" ./adcgs-enc "$dir/sequence" -o "$dir/x.adcgs"
 expect 5 "t000.ply and 1 more files of splats" ./adcgs-enc "$dir/t000.ply" "$dir/t001.ply" -o "$dir/x.adcgs"
@@ -114,7 +114,7 @@ for option in "" "--dataset splats"; do
     expect 4 "splat: splats (.splat), expected\|splat: splats (.splat), which is not read: convert" \
         sh -c "./adcgs-enc '$dir/splat' -o '$dir/x.adcgs' $option || exit 4"
 done
-# A playlist is no photo, nor is a video, nor any file with a name that selects a plug-in of OpenImageIO.
+# A playlist is not accepted as an image, nor is a video, nor a file whose name selects a plug-in of OpenImageIO.
 train=$dir/scene/transforms_train.json
 cp -r "$dir/scene" "$dir/photos"
 for name in x.mp4 x.ppm 'x.null?RES=64x64\&CHANNELS=3'; do
@@ -127,5 +127,5 @@ for name in x.mp4 x.ppm 'x.null?RES=64x64\&CHANNELS=3'; do
     printf 'any bytes' >"$file"
     expect 4 "a file of unknown kind, expected an image" ./adcgs-enc "$dir/photos" -o "$dir/x.adcgs" --preset draft -n 10
 done
-[ -z "$(find "$dir" \( -name 'x.adcgs' -o -name 'x.html' -o -name '.*tmp*' \))" ] || bad "something was left behind"
+[ -z "$(find "$dir" \( -name 'x.adcgs' -o -name 'x.html' -o -name '.*tmp*' \))" ] || bad "temporary or partial files remain"
 exit $failed

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-dec and a stream that comes through a pipe in pieces: frames are written while it does, the player sharpens. The next piece
-# is sent when what the last one brings is there. Runs in the build folder.
+# adcgs-dec with a stream that arrives through a pipe in pieces: frames are written meanwhile, and the player sharpens. The next
+# piece is sent when the output of the previous one exists. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-info adcgs-enc adcgs-demo-scene
 dec=$PWD/adcgs-dec
@@ -11,7 +11,7 @@ tiny_scene "$dir/scene"
 s=$dir/s.adcgs
 ./adcgs-enc "$dir/scene" -o "$s" --preset draft --max-anchors 300 --iterations 100 --set stereo=0,n_fg=8 --segment 0.1 --threads 2 \
     >"$dir/out" 2>&1 || { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
-# at TYPE SEGMENT NTH: where a chunk begins.
+# at TYPE SEGMENT NTH: offset of a chunk.
 at()
 {
     ./adcgs-info "$s" --bits | awk -v type="$1" -v segment="$2" -v nth="$3" \
@@ -20,8 +20,8 @@ at()
 front=$(at SEGM 0 1) tier=$(at GEOM 0 2) whole=$(at hash 0 1) late=$(at FEA2 1 1) size=$(wc -c <"$s" | tr -d ' ')
 [ -n "$front" ] && [ -n "$tier" ] && [ -n "$whole" ] && [ -n "$late" ] || { bad "chunks: $front $tier $whole $late"; exit 1; }
 
-# begin COMMAND...: start it with a pipe as standard input, or one that it opens itself as "pipe". end CODE TEXT: close the pipe,
-# and see how it leaves.
+# begin COMMAND...: start the command with a pipe as standard input, or with one that it opens as "pipe". end CODE TEXT: close the
+# pipe, and check the exit code and the message.
 begin()
 {
     rm -f "$dir/pipe"
@@ -41,36 +41,36 @@ end()
     [ "$got" -eq "$1" ] || { bad "exit code $got, expected $1"; cat "$dir/err"; }
     [ -z "$2" ] || grep -q -- "$2" "$dir/err" || { bad "no \"$2\" in the message"; cat "$dir/err"; }
 }
-# end_by_signal: with the pipe open, whose end must not come first.
+# end_by_signal: keep the pipe open, so that its end does not come first.
 end_by_signal()
 {
     kill -TERM $pid
     while kill -0 $pid 2>/dev/null; do sleep 0.05; done
     end 143 ""
 }
-# send FILE UPTO: its bytes that were not yet sent.
+# send FILE UPTO: send the bytes up to this offset that were not sent before.
 send()
 {
     tail -c +$((sent + 1)) "$1" | head -c $(($2 - sent)) >&3
     sent=$2
 }
-# await FILE: until it is there.
+# await FILE: wait until it exists.
 await()
 {
     while [ ! -s "$dir/$1" ]; do
-        kill -0 $pid 2>/dev/null || { bad "it left before there was $1"; cat "$dir/err"; break; }
+        kill -0 $pid 2>/dev/null || { bad "it exited before $1 existed"; cat "$dir/err"; break; }
         sleep 0.05
     done
 }
 same() { cmp -s "$dir/$1" "$dir/$2" || bad "$1 is not $2"; }
 
-# Frames of a segment are there as soon as it is whole, in order, and are those of the file.
+# The frames of a segment are written as soon as it is complete, in order, and equal those of the file.
 $dec "$s" -o "$dir/file%d.ppm" --quiet || bad "frames of the file"
 begin "$dec" - -o live%d.ppm --quiet
 send "$s" "$tier"
 send "$s" "$whole"
 await live2.ppm
-[ ! -e "$dir/live3.ppm" ] || bad "a frame of a segment that has not come"
+[ ! -e "$dir/live3.ppm" ] || bad "a frame of an incomplete segment"
 send "$s" "$(at INDX 0 1)"
 await live6.ppm
 send "$s" "$size"
@@ -79,7 +79,7 @@ for i in 0 1 2 3 4 5 6 7; do
     same live$i.ppm file$i.ppm
 done
 [ ! -e "$dir/live8.ppm" ] || bad "too many frames"
-# What is printed too.
+# The same for printed output.
 $dec "$s" --md5 --quiet >"$dir/md5"
 begin "$dec" - --md5 --quiet
 send "$s" "$whole"
@@ -88,7 +88,7 @@ head -n 3 "$dir/md5" | cmp -s - "$dir/out" || bad "three frames' digests"
 send "$s" "$size"
 end 0 ""
 same out md5
-# A pipe that has a name.
+# A named pipe.
 begin "$dec" pipe --md5 --quiet
 send "$s" "$whole"
 while [ "$(wc -l <"$dir/out")" -lt 3 ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
@@ -96,7 +96,7 @@ send "$s" "$size"
 end 0 ""
 same out md5
 
-# Whatever is asked for, and whatever follows the end: what the file gives. Some of it needs all of the stream.
+# All options, with any bytes after the end, give the output of the file. Some need the whole stream.
 cp "$s" "$dir/behind"
 echo "something else" >>"$dir/behind"
 for options in "" "--time 0:0.15" "--time 0.2" "--time 0.1:1" "--camera 1 --size 40x30" "--camera orbit" "--camera spiral --time 0:0.2" \
@@ -121,7 +121,7 @@ $dec - -o - --quiet <"$s" >"$dir/live.y4m"
 same live.y4m file.y4m
 expect 2 "time 9: the stream lasts from 0 to 0.23" "$dec" - --md5 --time 9 <"$s"
 
-# A stream that ends early, or lies: frames that were whole stay.
+# A stream that ends early, or is damaged: frames that were complete stay.
 head -c "$late" "$s" >"$dir/cut"
 $dec "$dir/cut" --md5 --quiet >"$dir/wanted"
 expect 0 "ends early" "$dec" - --md5 <"$dir/cut"
@@ -134,7 +134,7 @@ same_head
 expect 4 "^adcgs-dec: standard input: " "$dec" - -o "$dir/damaged%d.ppm" --quiet <"$dir/damaged"
 same damaged2.ppm file2.ppm
 expect 4 "^adcgs-dec: standard input: " "$dec" - -o "$dir/none.y4m" --quiet <"$dir/damaged"
-[ ! -e "$dir/none.y4m" ] || bad "a video that is not complete"
+[ ! -e "$dir/none.y4m" ] || bad "an incomplete video"
 { head -c 50 "$s"; printf 'damage'; tail -c +57 "$s"; } >"$dir/headless"
 expect 4 "^adcgs-dec: standard input: HEAD at byte 8: " "$dec" - --md5 <"$dir/headless"
 [ ! -s "$dir/out" ] || bad "frames without a header"
@@ -142,23 +142,23 @@ head -c "$front" "$s" >"$dir/cut"
 expect 4 "^adcgs-dec: standard input: ends at byte $front, before the base layer" "$dec" - --md5 <"$dir/cut"
 expect 4 "^adcgs-dec: standard input: ends at byte 0, before HEAD\|inside the signature" "$dec" - --md5 </dev/null
 
-# Who waits for bytes leaves when a signal comes.
+# A signal ends the wait for bytes.
 begin "$dec" - -o signal%d.ppm --quiet
 send "$s" "$whole"
 await signal2.ppm
 end_by_signal
 
-# ---- The player. ----
+# ---- The player ----
 
 SDL_VIDEODRIVER=dummy SDL_RENDER_DRIVER=software
 export SDL_VIDEODRIVER SDL_RENDER_DRIVER
 echo quit >"$dir/script"
 $dec - --play --script "$dir/script" <"$s" 2>"$dir/err" || {
-    [ $? -eq 5 ] && { echo "skipped: the player: there is none in this build"; exit $failed; }
+    [ $? -eq 5 ] && { echo "skipped: the player: not in this build"; exit $failed; }
     bad "the player does not start"
     cat "$dir/err"
 }
-# shows PICTURE OPTIONS...: what adcgs-dec renders with these options of the file.
+# shows PICTURE OPTIONS...: the image equals the one that adcgs-dec renders from the file with these options.
 shows()
 {
     picture=$1
@@ -168,7 +168,7 @@ shows()
 }
 play() { begin "$dec" "$@" --play --script script --size 128x96 --camera 0 --threads 2; }
 
-# It opens before there is anything to see, draws the first tier, then both; with a pipe that pauses keys do what they do.
+# The player opens before an image is possible, then renders the first tier, then both. Keys work while the pipe pauses.
 cat >"$dir/script" <<END
 wait $front bytes
 expect bytes $front
@@ -216,7 +216,7 @@ shows again.png --time 0
 shows two.png --time 0
 shows last.png --time 0.2333333333
 
-# So does the window by itself, where a line says how much has come unless the bar is off.
+# So does the window by itself; a line shows the amount received unless the bar is off.
 cat >"$dir/script" <<END
 wait 1 tiers
 wait 1 frames
@@ -239,12 +239,12 @@ send "$s" "$whole"
 await window2.png
 send "$s" "$size"
 end 0 ""
-! cmp -s "$dir/said1.png" "$dir/window1.png" || bad "nothing says how much has come"
+! cmp -s "$dir/said1.png" "$dir/window1.png" || bad "no line with the amount received"
 shows window1.png --tiers 1 --time 0
 shows window2.png --time 0
 shows window.png --time 0.2333333333
 
-# Playing waits for what has not come.
+# Playback waits for missing data.
 cat >"$dir/script" <<END
 wait 1 tiers
 expect playing 1
@@ -265,7 +265,7 @@ await played.png
 send "$s" "$size"
 end 0 ""
 
-# Damage is said, and what was there stays; so it is with an end that comes early, which is no failure.
+# Damage is reported, and the received part stays. The same for an early end, which is not an error.
 cat >"$dir/script" <<END
 wait end
 wait 1 frames
@@ -297,13 +297,13 @@ play -
 send "$s" "$front"
 end 4 "^adcgs-dec: standard input: ends at byte $front, before the base layer"
 
-# It leaves, also while it waits for bytes: by a script, and by a signal.
+# Script and signal end the player, also while it waits for bytes.
 printf 'wait 1 tiers\nquit\n' >"$dir/script"
 play -
 send "$s" "$tier"
 while kill -0 $pid 2>/dev/null; do sleep 0.05; done # with the pipe open
 end 0 ""
-printf 'key p\nkey escape\n' >"$dir/script" # before there is a picture
+printf 'key p\nkey escape\n' >"$dir/script" # before there is an image
 play -
 send "$s" "$front"
 while kill -0 $pid 2>/dev/null; do sleep 0.05; done

@@ -1,13 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-sweep with an encoder and an evaluation that only pretend: runs and their beginnings, yardsticks, ablation, seeds, tables,
-# checks, page, chart, resuming, failures, earlier sweeps. Then with the real ones in miniature.
+# adcgs-sweep with a stand-in encoder and evaluation: runs and their beginnings, yardsticks, ablation, seeds, tables, checks,
+# page, chart, resuming, failures, earlier sweeps. Then with the real programs on a tiny scene.
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-sweep
 . "${srcdir:-.}/tests/cli/pretend.sh"
 
-# A grid: runs that lambda alone tells apart begin together.
+# A grid: runs that differ only in lambda share their beginning.
 drawn=$PATH sweep --lambda 4,1,2 --k 5,10 --jobs 2 --yardsticks none
 [ $got -eq 0 ] || fail "plain run: $(cat "$dir/err")"
 calls 8 6 "--resume $out/beginning-k-[0-9]*.checkpoint"
@@ -21,18 +21,18 @@ if command -v gnuplot >/dev/null; then
 fi
 ! grep -q 'set logscale' "$out/rate.gp" || fail "a logarithmic axis for a factor of four"
 
-# Charts: those that have something to show, and what no other point betters.
+# Charts exist for available data. The chart of all curves also shows the best points of all.
 for chart in rate rate-ssim time speed bytes; do
     [ -e "$out/$chart.gp" ] || fail "no $chart.gp"
     ! command -v gnuplot >/dev/null || for kind in svg pdf; do [ -s "$out/$chart.$kind" ] || fail "no $chart.$kind"; done
 done
-[ ! -e "$out/rate-moving.gp" ] && [ ! -e "$out/views.gp" ] || fail "a chart of what nobody knows"
+[ ! -e "$out/rate-moving.gp" ] && [ ! -e "$out/views.gp" ] || fail "a chart without data"
 line "title 'best of all'" "$out/rate.gp"
 line '^1 1 0 0 0 0$' "$out/bytes.gp"
 line 'processors online' "$out/index.html"
 
-# Choices: a curve for each; the encoder's options by their names, its settings by theirs. What has to be done by some time does not
-# begin with others, and how fast a file plays is measured with the threads that it is said to have.
+# Choices: a curve for each; options of the encoder by their names, its settings by theirs. Runs with a time limit do not share a
+# beginning. Playback speed is measured with the number of threads of the run.
 out=$dir/grid
 sweep --lambda 1,2 --grid 'n_fv=16,32 preset=fast,medium' --yardsticks none
 [ $got -eq 0 ] || fail "choices: $(cat "$dir/err")"
@@ -58,7 +58,7 @@ for twice in 'iterations=100,200 --iterations 100' 'preset=fast --preset fast' '
 done
 calls 0
 
-# Tables of other methods: a curve each, where the file says so.
+# Tables of other methods: a curve for each, named on the page with its file.
 out=$dir/others
 printf 'source,psnr,who,bytes,cpu_seconds\nA paper,33.5,x,50000,7\n,34.5,,70000,\n\n' >"$dir/other.csv"
 sweep --lambda 1,2 --yardsticks none --add "It's other=$dir/other.csv"
@@ -67,7 +67,7 @@ line "^It_s other,,,1,50000,50000,50000,33.5000,33.5000,33.5000,,,7.00,,,$" "$ou
 line "Against It_s other: .*above it (points compared: 2" "$dir/report"
 line "It_s other: another method, from $dir/other.csv; A paper" "$out/index.html"
 : >"$dir/calls"
-# spoilt TEXT TABLE: refused with that, before anything is run.
+# spoilt TEXT TABLE: the table is rejected with TEXT before any run.
 spoilt()
 {
     printf '%b' "$2" >"$dir/spoilt.csv"
@@ -92,11 +92,11 @@ done
 sweep --lambda 1,2 --add "adcgs=$dir/other.csv"
 [ $got -eq 2 ] || fail "two curves of a name"
 sweep --lambda 1,2 --add "x=$dir/nowhere.csv"
-[ $got -eq 3 ] || fail "a table that is not there: $got"
+[ $got -eq 3 ] || fail "a missing table: $got"
 calls 0
 out=$dir/out
 
-# Going on: nothing that is there is made again, unless it belongs to other settings or is damaged. Beginnings serve later lambdas.
+# Resuming: existing results are kept, except those of other settings and damaged ones. Beginnings are used for later lambdas.
 sweep --lambda 1,2,4 --k 5,10 --resume --yardsticks none
 calls 0
 sweep --lambda 1,8 --k 5 --resume --yardsticks none
@@ -118,9 +118,9 @@ calls 1 0 "--beginning"
 sweep --lambda 8 --k 7 --yardsticks none
 calls 1 0 "--resume"
 
-# A run that fails is named, the others are written out; what it had reached is where the next attempt goes on.
+# A run that fails is named, and the others are evaluated. The next attempt resumes from the state of the failed run.
 sweep --lambda 1,666,2 --yardsticks none
-[ $got -eq 4 ] || fail "a failing encoder goes unnoticed"
+[ $got -eq 4 ] || fail "a failing encoder is no error"
 line 'lambda-666' "$dir/err"
 [ "$(wc -l <"$out/sweep.csv")" -eq 3 ] || fail "the other points are not in the table"
 calls 4
@@ -129,7 +129,7 @@ calls 1 1 "--resume $out/lambda-666.partial"
 sweep --lambda 1,666,2 --yardsticks none --resume --iterations 19
 calls 4 0 "--resume $out/lambda-666.partial"
 
-# Yardsticks: sizes, and how the curve compares with them.
+# Yardsticks: their sizes, and the comparison of the curve with them.
 out=$dir/yard
 sweep --lambda 1,2,4,8
 [ $got -eq 0 ] || fail "yardsticks: $(cat "$dir/err")"
@@ -166,7 +166,7 @@ truncate -s 7 "$out/uncompressed.raw"
 sweep --lambda 1,2,4,8 --resume
 calls 1 1 "--uncompressed"
 
-# Programs that are not installed are said to be missing, and no fault.
+# Programs that are not installed are reported as missing; this is not an error.
 rm -f "$dir/bin/zstd" "$dir/bin/xz"
 out=$dir/poor
 sweep --lambda 1,2 --yardsticks uncompressed
@@ -176,7 +176,7 @@ line 'no chart: install gnuplot' "$dir/err"
 ! grep -q '^zstd' "$out/sweep.csv" || fail "a size without zstd"
 : >"$dir/calls"
 
-# Seeds: mean, least and most of each point.
+# Seeds: mean, minimum and maximum of each point.
 out=$dir/seeds
 sweep --lambda 1,2 --seeds 1,2,3 --yardsticks uncompressed
 [ $got -eq 0 ] || fail "seeds: $(cat "$dir/err")"
@@ -186,7 +186,7 @@ line '34.20 (34.10..34.30)' "$dir/report"
 line 'xyerrorlines' "$out/rate.gp"
 line '"seed": 3' "$out/sweep.json"
 
-# Ablation: each stage once, the whole method shared with the curve; stages before rate are uncompressed.
+# Ablation: each stage once; the complete method shares its runs with the curve; stages before rate are uncompressed.
 out=$dir/stages
 sweep --lambda 1,2,4 --ablation --yardsticks none
 [ $got -eq 0 ] || fail "ablation: $(cat "$dir/err")"
@@ -204,7 +204,7 @@ sweep --ablation
 line "^'+ densification,,,1,64000" "$out/ablation.csv"
 : >"$dir/calls"
 
-# What moves: asked for, and in every table. Results of an earlier version, which do not tell, are good for all else.
+# PSNR of dynamic regions: requested, and in every table. Results of an earlier version without it remain valid otherwise.
 mkdir "$dir/old" "$dir/new" "$dir/now"
 out=$dir/old/x
 sweep --lambda 1,4 --yardsticks none
@@ -217,8 +217,8 @@ calls 0
 line '^adcgs,4,,1,16000,16000,16000,32.0000,.*,100.00,,0.025000$' "$out/sweep.csv"
 out=$dir/new/x
 sweep --lambda 1,4 --yardsticks none
-[ $got -eq 0 ] || fail "what moves: $(cat "$dir/err")"
-tail -n 1 "$dir/evaluations" | grep -q -e '--metrics dynamic-psnr' || fail "nobody asked for what moves"
+[ $got -eq 0 ] || fail "dynamic regions: $(cat "$dir/err")"
+tail -n 1 "$dir/evaluations" | grep -q -e '--metrics dynamic-psnr' || fail "PSNR of dynamic regions is not requested"
 line '^adcgs,4,,1,16000,16000,16000,32.0000,.*,100.00,22.0000,0.025000$' "$out/sweep.csv"
 line '"dynamic_psnr": 22' "$out/sweep.json"
 for page in "$out/index.html" "$dir/report"; do
@@ -227,8 +227,9 @@ for page in "$out/index.html" "$dir/report"; do
 done
 : >"$dir/calls"
 
-# Against earlier sweeps: the same one is 0 %, one with a quarter more bytes -20 %, also of what moves, unless that gained what it
-# cost; where it is not known, nothing is said of it. Curves are named after what tells their folders from this one's.
+# Comparison with earlier sweeps: an equal one gives 0 %. One with a quarter more bytes gives -20 %, also for dynamic regions,
+# except if these gained as much quality. Without PSNR of dynamic regions there is no figure for them. Curves get the part of
+# their folder's path that differs from this sweep's.
 mkdir -p "$dir/more/x" "$dir/moved/x" "$dir/it's/x"
 sed 's/64000/80000/; s/16000/20000/' "$out/sweep.json" >"$dir/more/x/sweep.json"
 for bytes in 80000 20000; do line "\"mean\": $bytes" "$dir/more/x/sweep.json"; done
@@ -261,7 +262,7 @@ if command -v jq >/dev/null; then
         fail "sweep.json: $(cat "$out/sweep.json")"
 fi
 
-# Of an earlier sweep it is its own curve, whatever it was compared with itself; seeds keep their spread.
+# The own curve of an earlier sweep is used, not the curves that it was compared with. The spread over seeds is kept.
 out=$dir/seeds
 sweep --lambda 1,4 --seeds 1,3 --yardsticks none --against "$dir/now/x"
 line '^x,1,,1,64000,.*,25.0000,0.025000$' "$out/sweep.csv"
@@ -272,15 +273,16 @@ line 'Against seeds: BD-rate +[0-9.]* %, BD-rate of moving regions +[0-9.]* %, N
 line 'xyerrorlines' "$out/rate.gp"
 : >"$dir/calls"
 
-# refused CODE TEXT FOLDERS: what is no earlier sweep of the scene is told in a line, before anything is run or made.
+# refused CODE TEXT FOLDERS: folders that are not an earlier sweep of the scene are rejected in one line, before any run or
+# output.
 refused()
 {
     out=$dir/never
     sweep --lambda 1,4 --against "$3"
     [ "$got" -eq "$1" ] && grep -q -e "$2" "$dir/err" && [ "$(wc -l <"$dir/err")" -eq 1 ] || fail "$got for $3: $(cat "$dir/err")"
-    [ ! -e "$out" ] && [ ! -s "$dir/calls" ] || fail "begun in spite of $3"
+    [ ! -e "$out" ] && [ ! -s "$dir/calls" ] || fail "a run in spite of $3"
 }
-# doctored TEXT SCRIPT: the same of a sweep.json changed by sed.
+# doctored TEXT SCRIPT: the same for a sweep.json changed by sed.
 doctored()
 {
     sed "$2" "$dir/more/x/sweep.json" >"$dir/moved/x/sweep.json"
@@ -322,7 +324,7 @@ for list in '' 1, ,1 1,x 1,-1 "$(seq -s, 1 17)"; do
     [ $got -eq 2 ] || fail "list \"$list\" accepted"
 done
 sweep --lambda 1 --seeds 1.5
-[ $got -eq 2 ] || fail "a seed that is not whole accepted"
+[ $got -eq 2 ] || fail "a fractional seed accepted"
 sweep --lambda 1 --yardsticks networks,zip
 [ $got -eq 2 ] || fail "an unknown yardstick accepted"
 for options in "--k 17" "--set k=17" "--set slim_at=1" "--set n_fg=9" "--preset quick" "--iterations 9" \
@@ -339,14 +341,14 @@ sweep
 "$dir/adcgs-sweep" "$dir/scene" --lambda 1 2>/dev/null
 [ $? -eq 2 ] || fail "no output accepted"
 
-# What part of which scene it is goes to both programs.
+# The options that select the scene's layout and frames go to both programs.
 sweep --lambda 9 --dataset colmap --frames 0:9:2 --yardsticks none
 calls 1 1 "--dataset colmap --frames 0:9:2"
-tail -n 1 "$dir/evaluations" | grep -q -e "--dataset colmap --frames 0:9:2" || fail "evaluated otherwise: $(cat "$dir/evaluations")"
+tail -n 1 "$dir/evaluations" | grep -q -e "--dataset colmap --frames 0:9:2" || fail "other options: $(cat "$dir/evaluations")"
 
-# Parts of the stream of the middle lambda, 32000 bytes: bytes as its chunks tell, the whole as the run itself was measured, and
-# nothing where nothing can be drawn. A measurement that fails spoils nothing else, and is all that is left to do.
-# measured N: so many measurements of parts since the last look.
+# Parts of the stream of the middle lambda, 32000 bytes. Bytes come from its chunks, figures of the whole from the run itself. A
+# part that cannot be rendered has no figures. A failed measurement affects no other, and only it is repeated.
+# measured N: there were N measurements of parts since the previous check.
 measured()
 {
     [ "$(grep -c -e '--json' "$dir/evaluations")" -eq "$1" ] || fail "expected $1 measurements: $(cat "$dir/evaluations")"
@@ -382,14 +384,14 @@ for view in "0,it's 0,0.000000,31" "0,it's 0,0.500000,32" "1,it's 1,0.000000,33"
     echo "lambda-2,$view.0000,2${view%%,*}.0000"
 done >>"$dir/expected"
 cmp "$dir/expected" "$out/views.csv" || fail "views: $(cat "$out/views.csv")"
-[ -z "$(find "$out" -name '*.part')" ] || fail "left behind: $(ls "$out")"
+[ -z "$(find "$out" -name '*.part')" ] || fail "other files remain: $(ls "$out")"
 if command -v jq >/dev/null; then
     jq -e '.shown | .run == "lambda-2" and (.portions | length) == 15 and (.views | length) == 4 and
            (.portions[] | select(.of == "percent" and .count == 10).psnr) == null and
            (.portions[] | select(.of == "tiers" and .count == 1) | .bytes == 31064 and .dynamic_psnr == 22) and
            .views[3].camera == 1' "$out/sweep.json" >/dev/null || fail "sweep.json: $(cat "$out/sweep.json")"
 fi
-# named FILE NAME...: the chart as a picture says all of these, and so does the page.
+# named FILE NAME...: the chart's image contains all these names, and so does the page.
 named()
 {
     chart=$1
@@ -407,18 +409,19 @@ line '^0.5 1 0.25 0.75 0.5 1.5 34$' "$out/errors.gp"
 sweep --lambda 1,2,4 --yardsticks none --resume
 measured 0
 sweep --lambda 1,2,4 --yardsticks none
-measured 15 # of streams that are made anew everything
+measured 15 # all measurements, since the streams were made again
 
-# One layer and one tier are no choice. Of one view of each camera the names tell.
+# A single layer and a single tier give no chart. With one view for each camera the chart has the names of the views.
 touch "$dir/flat"
 sed -i 's/0,0.5,32 1,0,33 1,0.5,34/1,0.5,32/' "$dir/adcgs-eval"
 drawn=$PATH sweep --lambda 1,2 --yardsticks none
-! grep -q 'layers,\|tiers,' "$out/portions.csv" && ! grep -q 'first layers' "$out/portions.gp" || fail "a choice of one"
+! grep -q 'layers,\|tiers,' "$out/portions.csv" && ! grep -q 'first layers' "$out/portions.gp" || fail "a chart of one part"
 named portions 'first bytes of the file'
 named errors "it_s 0" "mean 31.50 dB" "mean 20.50 dB"
 rm "$dir/moving" "$dir/views" "$dir/flat"
 
-# All scenes by one command, before and after: a row for each that is there, with its own lambdas. Nothing is made twice.
+# All scenes by one command, before and after a change: a row for each available scene, with its own lambdas. No result is made
+# twice.
 cat >"$dir/adcgs-demo-scene" <<'END'
 #!/bin/bash
 mkdir -p "$4"
@@ -436,7 +439,7 @@ curves() # CURVES [BEFORE]
 curves first
 calls 15 15 "--iterations 3000 --threads 1"
 [ "$(wc -l <"$dir/report")" -eq 7 ] || fail "expected five scenes: $(cat "$dir/report")"
-line '^| Bytes, .* at lambda | 10 | 20 | BD-rate | of what moves |$' "$dir/report"
+line '^| Bytes, .* at lambda | 10 | 20 | BD-rate | of moving regions |$' "$dir/report"
 line '^| built-in demo | 6400, 26.10, 16.10 | 3200, 16.10, 6.10 | - | - |$' "$dir/report"
 line '^| `zju313_15f`, lambda times 0.3 | 21333, 33.10, 23.10 | 10666, 30.10, 20.10 | - | - |$' "$dir/report"
 line 'no data/nrnerf_hand, left out' "$dir/err"
@@ -448,12 +451,12 @@ curves second first
 line '^| `llff_fern` | 6400, 26.10, 16.10 | 3200, 16.10, 6.10 | -20.0 % | -20.0 % |$' "$dir/report"
 line '^| `cross80`, built in | .* | [+-]0.0 % | [+-]0.0 % |$' "$dir/report"
 line '^| `turn1`, built in | .* | - | - |$' "$dir/report"
-line 'no first/turn1 to compare with' "$dir/err"
+line 'no first/turn1, not compared' "$dir/err"
 rm "$dir/moving"
 
-# The real programs on a tiny scene: a stream from a shared beginning is that of a whole run.
+# The real programs on a tiny scene: a stream from a shared beginning equals that of a complete run.
 for tool in adcgs-enc adcgs-eval adcgs-demo-scene; do
-    [ -x "./$tool" ] || { echo "no $tool in $PWD: only pretended"; exit 0; }
+    [ -x "./$tool" ] || { echo "no $tool in $PWD: stand-ins only"; exit 0; }
 done
 small="--preset draft --iterations 60 --set n_fg=8"
 ./adcgs-demo-scene --scene tiny --size 32x32 --format ppm -o "$dir/tiny" >/dev/null 2>&1 || fail "adcgs-demo-scene"
@@ -461,21 +464,21 @@ small="--preset draft --iterations 60 --set n_fg=8"
 ./adcgs-sweep "$dir/tiny" -o "$dir/real" --lambda 0.3,0.1 --seeds 2 $small >"$dir/report" 2>"$dir/err" || fail "real: $(cat "$dir/err")"
 [ "$(wc -l <"$dir/real/sweep.csv")" -ge 8 ] || fail "real: $(cat "$dir/real/sweep.csv")"
 for picture in worst middle; do
-    [ -s "$dir/real/$picture.png" ] || fail "no picture of the $picture view: $(ls "$dir/real")"
+    [ -s "$dir/real/$picture.png" ] || fail "no image of the $picture view: $(ls "$dir/real")"
 done
-[ ! -e "$dir/real/views.part" ] || fail "all pictures were left there"
+[ ! -e "$dir/real/views.part" ] || fail "images of all views remain"
 grep -o 'base64,[^"]*' "$dir/real/index.html" | head -n 1 | cut -c 8- | base64 -d | cmp - "$dir/real/worst.png" ||
-    fail "another picture on the page"
+    fail "another image on the page"
 line '^\$moving' "$dir/real/views.gp"
 line "of moving regions'" "$dir/real/views.gp"
 # shellcheck disable=SC2086
 ./adcgs-enc "$dir/tiny" -o "$dir/whole.adcgs" --lambda 0.3 --seed 2 $small 2>"$dir/err" || fail "whole: $(cat "$dir/err")"
 cmp "$dir/whole.adcgs" "$dir/real/lambda-0.3-seed-2.adcgs" || fail "another stream from a shared beginning"
 
-# Parts are what adcgs-eval measures of so many layers and tiers, and of a file cut by other means; fewer tiers take the bytes of a
-# stream that has no more.
+# Figures of parts equal those of adcgs-eval with as many layers and tiers, and of a file cut in another way. A number of tiers
+# has the bytes of a stream with only these tiers.
 stream=$dir/real/lambda-0.3-seed-2.adcgs
-# part PART COLUMN: of the table. same PART FILE OPTIONS...: the PSNR of a part is that of the file.
+# part PART COLUMN: a value of the table. same PART FILE OPTIONS...: the PSNR of a part is that of the file.
 part() { grep "^lambda-0.3-seed-2,$1," "$dir/real/portions.csv" | cut -d, "-f$2"; }
 same()
 {
@@ -492,7 +495,7 @@ same tiers,1 "$dir/cut.adcgs"
 head -c "$(part percent,90 4)" "$stream" >"$dir/prefix"
 same percent,90 "$dir/prefix" -q
 same percent,100 "$stream"
-[ "$(part percent,100 5)" = "$(awk -F, '$1 == "adcgs" && $2 == 0.3 { print $8 }' "$dir/real/sweep.csv")" ] || fail "the whole is another"
+[ "$(part percent,100 5)" = "$(awk -F, '$1 == "adcgs" && $2 == 0.3 { print $8 }' "$dir/real/sweep.csv")" ] || fail "the whole differs"
 awk -F, 'NR > 1 { bad += $2 == of && $4 <= bytes; of = $2; bytes = $4 } END { exit bad }' "$dir/real/portions.csv" ||
-    fail "more is smaller: $(cat "$dir/real/portions.csv")"
+    fail "a larger part has fewer bytes: $(cat "$dir/real/portions.csv")"
 exit 0

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc with a target: sizes and qualities are met, whatever cannot be met is said, and a limit of time is kept.
+# adcgs-enc with a target: sizes and qualities are met, a message says if one cannot be met, and a time limit is kept.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-dec adcgs-eval adcgs-demo-scene
@@ -13,7 +13,8 @@ enc()
     run "$@"
     judge "$@"
 }
-# limited SECONDS CODE NAME OPTIONS...: the same with a limit of time, or twice as much where so busy a machine needs that to begin.
+# limited SECONDS CODE NAME OPTIONS...: the same with a time limit. It is doubled if a busy machine does not begin training within
+# it.
 limited()
 {
     limit=$1 code=$2 name=$3
@@ -33,10 +34,10 @@ run()
 judge()
 {
     case $got in $code) ;; *) bad "exit code $got, expected $code: adcgs-enc $*"; cat "$dir/$name.err" ;; esac
-    ./adcgs-dec "$dir/$name.adcgs" --md5 >/dev/null 2>&1 || bad "no stream that decodes: adcgs-enc $*"
+    ./adcgs-dec "$dir/$name.adcgs" --md5 >/dev/null 2>&1 || bad "the stream does not decode: adcgs-enc $*"
 }
 
-# refuse TEXT OPTIONS...: wrong use, one line that says TEXT, no file.
+# refuse TEXT OPTIONS...: wrong usage gives one line with TEXT, and no file.
 refuse()
 {
     text=$1
@@ -45,17 +46,17 @@ refuse()
     [ ! -e "$dir/x.adcgs" ] || bad "a file in spite of: $*"
 }
 
-# within A LOW HIGH WHAT: a number lies in [LOW, HIGH].
+# within A LOW HIGH WHAT: A is in [LOW, HIGH].
 within() { awk -v a="$1" -v l="$2" -v h="$3" 'BEGIN { exit !(a != "" && a >= l && a <= h) }' || bad "$4: $1 is not in [$2, $3]"; }
 
-# value FILE KEY: the first number of that name in a JSON report.
+# value FILE KEY: the first number of this name in a JSON report.
 value() { tr -d '\n' <"$1" | sed -n "s/.*[{,] *\"$2\": *\([-0-9.e]*\).*/\1/p"; }
 
 scene=$dir/scene
 tiny_scene "$scene"
 n=1600
 
-# Sizes (ADCGS_FULL=1: three): never more, and less by under 3 %; the report tells.
+# Sizes (ADCGS_FULL=1: three): never larger, and smaller by less than 3 %; the report agrees.
 for size in ${ADCGS_FULL:+12000 30KiB} 20k; do
     case $size in *KiB) bytes=30720 ;; *k) bytes=20000 ;; *) bytes=$size ;; esac
     enc 0 "size$size" --size $size --iterations $n
@@ -65,7 +66,7 @@ for size in ${ADCGS_FULL:+12000 30KiB} 20k; do
     [ ! -s "$dir/size$size.err" ] || { bad "messages with --size $size"; cat "$dir/size$size.err"; }
 done
 
-# A budget of anchors that is given stands, and anchors that a size cannot hold go.
+# A given budget of anchors is kept, and anchors beyond the size are removed.
 ./adcgs-enc "$scene" -o "$dir/few.adcgs" --preset draft --json --size 14k --max-anchors 60 --iterations 100 \
     >"$dir/few.out" 2>/dev/null
 within "$(wc -c <"$dir/few.adcgs")" 1 14000 "bytes with few anchors"
@@ -73,7 +74,7 @@ within "$(value "$dir/few.out" anchors)" 1 60 "few anchors"
 enc 0 many --size 12k --set max_anchors=600,theta_width=16,omega_width=16,varpi_width=16,entropy_width=8 --iterations 400
 within "$(wc -c <"$dir/many.adcgs")" 11641 12000 "bytes with many anchors"
 
-# The same bytes after an interrupt, with other threads (ADCGS_FULL=1: early and late); a run is bound to its target.
+# The same bytes after an interrupt, with other numbers of threads (ADCGS_FULL=1: early and late); a run belongs to its target.
 for at in ${ADCGS_FULL:+300} 700; do
     rm -f "$dir/state"
     interrupt INT "$dir/stop.log" "\"iteration\":$at," ./adcgs-enc "$scene" -o "$dir/stop.adcgs" --preset draft --size 20k \
@@ -84,7 +85,7 @@ done
 ./adcgs-enc "$scene" -o "$dir/x.adcgs" --preset draft --size 20001 --iterations $n --resume "$dir/state" 2>"$dir/err"
 [ $? -eq 4 ] && grep -q "other options" "$dir/err" || { bad "a run goes on with another target"; cat "$dir/err"; }
 
-# A quality: what adcgs-eval measures on the training views. Views for tests play no part.
+# A quality: that of adcgs-eval on the training views. Test views have no effect.
 enc 0 psnr --psnr 26 --iterations 900
 ./adcgs-eval "$dir/psnr.adcgs" "$scene" --split train --json >"$dir/train.json" 2>"$dir/err" || bad "adcgs-eval"
 within "$(sed 's/.*\], *//' "$dir/train.json" | tr -d '\n' | sed 's/.*\],//; s/.*"psnr": *\([0-9.]*\).*/\1/')" 25.9 26.1 "PSNR"
@@ -93,23 +94,23 @@ mkdir "$dir/blind"
 cp -r "$scene/train" "$scene/transforms_train.json" "$dir/blind"
 enc '[01]' seen --psnr 20 --iterations 300
 scene=$dir/blind enc '[01]' blind --psnr 20 --iterations 300 --threads 5
-cmp "$dir/seen.adcgs" "$dir/blind.adcgs" || bad "views for tests play a part, or threads"
+cmp "$dir/seen.adcgs" "$dir/blind.adcgs" || bad "test views or threads have an effect"
 
-# Each segment has it, so all of the file has.
+# Each segment has the quality, and so has the whole file.
 enc 0 parts --psnr 26 --iterations 800 --segment 0.1
 grep -q '"segments": 2' "$dir/parts.out" && ./adcgs-info "$dir/parts.adcgs" --json | grep -q '"predicted": true' ||
     bad "no segments with --psnr"
 within "$(tr -d ' \n' <"$dir/parts.out" | sed 's/.*"reached":\([0-9.]*\).*/\1/')" 25.9 26.1 "PSNR of segments"
 
-# What cannot be had: the nearest is written, and a line says so.
+# A target that cannot be met: the nearest stream is written, and a line says so.
 enc 1 best --psnr 70 --iterations 100
 grep -q "the maximum of this run" "$dir/best.err" && [ "$(wc -l <"$dir/best.err")" -eq 1 ] ||
     { bad "the best goes without a word"; cat "$dir/best.err"; }
-grep -q '"met": false' "$dir/best.out" || bad "--json does not tell that a target is missed"
+grep -q '"met": false' "$dir/best.out" || bad "--json: no missed target"
 enc 1 large --size 900k --iterations 100 --max-anchors 50
 grep -q "smaller than the requested 900000" "$dir/large.err" || { bad "too large goes without a word"; cat "$dir/large.err"; }
 
-# Wrong use.
+# Wrong usage.
 refuse "too few" --size 3000
 refuse "too few" --size 1
 for size in 0 -5 x 10q 1.5 1e5 ''; do
@@ -124,8 +125,8 @@ refuse "needs rate" --size 20k --without fine,rate
 refuse "segment excludes --size" --size 20k --segment 0.1
 refuse "needs rate" --psnr 30 --uncompressed "$dir/raw"
 
-# A limit of time ends the run, with a stream that is whole and no larger than asked for. How near it comes depends on what the
-# machine does in that time; a run that has too little to show says so.
+# A time limit ends the run, with a valid stream that is not larger than requested. The difference depends on the machine; a
+# message reports a stream that is too small.
 limited 4 '[01]' brief --size 15k
 least=14550 most=15000
 if [ "$got" -eq 1 ]; then

@@ -1,13 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# Names and texts of streams and scenes that a terminal would obey, that are no UTF-8, or that break JSON and tables: what is
-# printed is safe, JSON is JSON, and what one program writes another reads.
+# Names and texts of streams and scenes with control characters, invalid UTF-8, or characters that break JSON and tables: printed
+# text is safe, JSON is valid, and one program reads the output of another.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-info adcgs-eval adcgs-enc adcgs-demo-scene conformance/make_vectors
 dec=./adcgs-dec
 
-# A stream whose first camera is named by: quote, backslash, escape sequence, newline, C1 as UTF-8, U+202E, a byte and a
-# surrogate that are no UTF-8. Its second camera is a formula. Two texts have the same key.
+# A stream whose first camera's name consists of: quote, backslash, escape sequence, newline, C1 as UTF-8, U+202E, and a byte and
+# a surrogate that are invalid UTF-8. The second camera's name is a formula. Two texts have the same key.
 mkdir "$dir/recipes" "$dir/vectors"
 cat >"$dir/recipes/good-hostile.txt" <<'END'
 title "Hostile names"
@@ -26,10 +26,10 @@ conformance/make_vectors "$dir" "$dir" >"$dir/out" 2>&1 || { bad "make_vectors";
 s=$dir/vectors/good-hostile.adcgs
 shown='"\\x1b[2J\x0a\u{9b}\u{202e}\xff\xed\xa0\x80zA'
 
-# safe FILE: text of printable characters and newlines alone.
+# safe FILE NAME: the file contains only printable characters and newlines.
 safe()
 {
-    iconv -f UTF-8 -t UTF-8 "$1" >/dev/null 2>&1 || bad "$2: no UTF-8"
+    iconv -f UTF-8 -t UTF-8 "$1" >/dev/null 2>&1 || bad "$2: invalid UTF-8"
     ! LC_ALL=C grep -q -P '[\x00-\x09\x0b-\x1f\x7f]|\xc2[\x80-\x9f]|\xe2\x80[\xa8-\xae]' "$1" || { bad "$2: not safe"; cat -v "$1"; }
 }
 json() { python3 -c 'import json, sys; print(eval(sys.argv[2], {"j": json.load(open(sys.argv[1], encoding="utf-8"))}))' "$1" "$2"; }
@@ -47,7 +47,7 @@ printf 'x' >"$dir/$(printf 'bad\033[2J\302\233\377\n.adcgs')"
 expect 4 "bad" $dec --md5 "$dir/$(printf 'bad\033[2J\302\233\377\n.adcgs')"
 safe "$dir/err" "a file's name"
 
-# JSON; a key twice is twice there.
+# JSON; a key that occurs twice is there twice.
 expect 0 "" ./adcgs-info --json "$s"
 cp "$dir/out" "$dir/info.json"
 safe "$dir/info.json" "adcgs-info --json"
@@ -57,17 +57,17 @@ if python3 --version >/dev/null 2>&1; then
     [ "$(json "$dir/info.json" '[m["key"] + ascii(m["value"]) for m in j["metadata"]]')" = "[\"title'\\\\x1b[2J'\", \"title'two'\"]" ] ||
         bad "texts in JSON: $(json "$dir/info.json" '[m["key"] + ascii(m["value"]) for m in j["metadata"]]')"
 else
-    echo "skipped: JSON read by another program: no python3"
+    echo "skipped: JSON in another program: no python3"
 fi
 
-# Stored cameras written as a path are read again, as the very same.
+# Stored cameras written as a path and read again are unchanged.
 expect 0 "" $dec "$s" --cameras "$dir/path.json"
 safe "$dir/path.json" "--cameras"
 expect 0 "frame" $dec "$s" --camera "$dir/path.json" --md5
 $dec "$s" --camera 0 --time 0 --md5 >"$dir/md5" 2>/dev/null
-head -n 1 "$dir/out" | cmp -s - "$dir/md5" || bad "the first camera is another one when it is read again"
+head -n 1 "$dir/out" | cmp -s - "$dir/md5" || bad "the first camera is changed when read again"
 
-# A scene with such names: camera names come from its pictures'.
+# A scene with such names: cameras are named after their images.
 tiny_stream 10
 name=$(printf '=r\033[2J\302\233\342\200\256"')
 mv "$dir/scene/test/r_000.ppm" "$dir/scene/test/$name.ppm"

@@ -1,17 +1,17 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# Everything, built with another compiler and sanitizers, passes the unit tests, the replay of the fuzz targets, and the vectors; a
-# tarball, built without SIMD, passes `make distcheck`.
+# All programs, built with another compiler and sanitizers, pass the unit tests, the replay of the fuzz targets, and the vectors.
+# A tarball, built without SIMD, passes `make distcheck`.
 #
 # usage: check_builds.sh [-c CONFORM] [-s] TARGET...
-#   -c CONFORM  a native adcgs-conform, which asks the decoders (default ./adcgs-conform)
+#   -c CONFORM  a native adcgs-conform, which runs the decoders (default ./adcgs-conform)
 #   -s          strict: a missing compiler is a failure, not a skip
 # Builds in builds/TARGET of the working directory, which is a build folder. One line per target; exit status 1 if one failed.
 set -u
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh" || exit 99
 
-# describe TARGET: sets the arguments of configure, CC first, and the unit tests that it leaves out. Seeds of the fuzz targets are
-# changed most often where sanitizers watch all of it.
+# describe TARGET: sets the arguments of configure, CC first, and the unit tests to leave out. Seeds of the fuzz targets get most
+# mutations in the build where sanitizers check all code.
 describe()
 {
     export ADCGS_FUZZ_ROUNDS=2
@@ -20,17 +20,18 @@ describe()
     case $1 in
         tarball)
             arguments=(CC=gcc CXX=g++ CFLAGS=-O2 CXXFLAGS=-O1 --enable-werror --disable-simd)
-            # Trainings, and pictures to match, take up to 20 times as long without SIMD; that levels agree is tested by the others.
+            # Tests of training and of image matching take up to 20 times as long without SIMD. The other tests compare the
+            # levels.
             except=$(printf 'tests/unit/test_%s ' trainer train batch control moments nets rdo scale no_memory bodies film) ;;
         sanitize)
             ADCGS_FUZZ_ROUNDS=10
-            unset ADCGS_FULL # which asks functions about more numbers: for their values, which are the same here
+            unset ADCGS_FULL # it evaluates functions for more numbers; the values are the same in this build
             arguments=(CC=clang CXX=clang++ CFLAGS="-g1 -O1 $findings" CXXFLAGS="-O1 $findings" --enable-werror
                 --disable-hardening --without-web)
-            # Some 60 programs of this size: the usual linker takes ten times as long.
+            # About 60 programs of this size: the default linker takes ten times as long.
             ! command -v ld.gold >/dev/null || arguments+=(LDFLAGS=-fuse-ld=gold) ;;
-        # Libraries that are not instrumented would look uninitialised: the decoder needs none. AVX-512's kernels
-        # are of the same text as AVX2's.
+        # Libraries without instrumentation would look uninitialised; the decoder needs none. The kernels of AVX-512 have
+        # the same source as those of AVX2.
         memory)
             wanted_levels=avx2
             arguments=(CC=clang CFLAGS='-g1 -O1 -fsanitize=memory -fno-sanitize-recover=all' --disable-hardening --disable-encoder) ;;
@@ -44,8 +45,8 @@ build()
     make
 }
 
-# units: builds in the working directory and tests. Where there is no adcgs-conform, so that no test goes through the vectors, the
-# decoder answers for them.
+# units: builds in the working directory and runs the tests. Without adcgs-conform no test runs the vectors; then the decoder
+# itself answers for them.
 units()
 {
     build >build.log 2>&1 || { line FAIL "does not build, see $PWD/build.log"; return; }
@@ -55,7 +56,7 @@ units()
     line PASS "$(counted); $answers, $((SECONDS - begin)) s"
 }
 
-# The tarball: whole, and good for a build elsewhere, a read-only source tree included; at the length of a short check.
+# The tarball is complete, and builds elsewhere, also from a read-only source tree; tested at the length of a short check.
 tarball()
 {
     local log=$PWD/check.log
@@ -65,7 +66,7 @@ tarball()
     line PASS "distcheck, $(counted), $((SECONDS - begin)) s"
 }
 
-# What failed, or what did not compile: the log itself may be out of reach.
+# The failed tests, or the compiler's error; the log may not be accessible to the reader.
 failed_tests()
 {
     local why

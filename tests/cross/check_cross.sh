@@ -4,13 +4,13 @@
 # qemu), gives every conformance vector the same digests: models, splats and frames, to the bit.
 #
 # usage: check_cross.sh [-c CONFORM] [-s] TARGET...
-#   -c CONFORM  a native adcgs-conform, which asks the decoders (default ./adcgs-conform)
+#   -c CONFORM  a native adcgs-conform, which runs the decoders (default ./adcgs-conform)
 #   -s          strict: a missing compiler or emulator is a failure, not a skip
 # Builds in cross/TARGET of the working directory. One line per target; exit status 1 if one failed.
 set -u
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh" || exit 99
 
-# describe TARGET: sets compiler, flags, configure's options, libtool's, and emulator (empty for this machine).
+# describe TARGET: sets compiler, flags, options of configure and libtool, and emulator (empty for this machine).
 describe()
 {
     local triplet= cpu=
@@ -31,7 +31,7 @@ describe()
     emulator=$(command -v qemu-$cpu-static || command -v qemu-$cpu) || emulator=qemu-$cpu
 }
 
-# build: the decoder that was described, in the working directory.
+# build: the described decoder, in the working directory.
 build()
 {
     [ Makefile -nt "$source/configure" ] ||
@@ -39,7 +39,7 @@ build()
     make LDFLAGS=$link adcgs-dec
 }
 
-# check TARGET: everything about one target; prints its line.
+# check TARGET: builds and checks one target; prints its line.
 check()
 {
     local target=$1 compiler flags options link emulator tool answers begin=$SECONDS

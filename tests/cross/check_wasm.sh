@@ -3,7 +3,7 @@
 # The decoder as WebAssembly, run by node's WASI, gives every conformance vector the same digests.
 #
 # usage: check_wasm.sh [-c CONFORM] [-s] TARGET...
-#   -c CONFORM  a native adcgs-conform, which asks the decoders (default ./adcgs-conform)
+#   -c CONFORM  a native adcgs-conform, which runs the decoders (default ./adcgs-conform)
 #   -s          strict: a missing node is a failure, not a skip
 # Builds nothing: TARGET is relaxed or exact, a module of web/ in the working directory. One line per target.
 set -u
@@ -18,12 +18,12 @@ check()
     }
     [ -f "$module" ] || { line SKIP "no compiler for WebAssembly"; return; }
     node=$(command -v node || command -v nodejs) || { line $missing "node is not installed"; return; }
-    # Node 20 has relaxed SIMD where it is asked for; older ones do not know the module, newer ones not the question.
-    # One thread collects its garbage: with several it now and then ends at "unreachable code" while a module's memory grows
+    # Node 20 has relaxed SIMD behind an option. Older versions cannot run the module, newer ones do not know the option.
+    # The garbage collector runs in one thread. With several it sometimes ends at "unreachable code" while a module's memory grows
     # (nodejs/node#51555), at good-level-1-model-bytes in one run of four.
     local options="--no-warnings --single-threaded-gc"
     for run in "$node $options --experimental-wasm-relaxed-simd" "$node $options" ""; do
-        [ -n "$run" ] || { line SKIP "node $("$node" --version) does not know what the module needs"; return; }
+        [ -n "$run" ] || { line SKIP "node $("$node" --version) does not support relaxed SIMD"; return; }
         $run -e 'process.exit(WebAssembly.validate(require("fs").readFileSync(process.argv[1])) ? 0 : 1)' "$module" 2>/dev/null &&
             break
     done

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# What check_cross.sh and check_builds.sh share; to be read with `.`, and then:
+# Shared by check_cross.sh, check_builds.sh and check_wasm.sh, which read it with `.`, and then:
 #   parse_options "$@"; shift $((OPTIND - 1))    sets $source, $conform, and $missing, the word for a missing compiler
 
-# What a sanitizer finds is a crash, never to be taken for an exit code.
+# A sanitizer's finding is a crash, so that it is never taken for an exit code.
 export ASAN_OPTIONS=abort_on_error=1 UBSAN_OPTIONS=abort_on_error=1 MSAN_OPTIONS=abort_on_error=1
 
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd) || exit 99
@@ -28,7 +28,8 @@ parse_options()
     [ ! -f "$source/config.status" ] || wrong_use "the source tree is configured in place"
 }
 
-# levels RUN: the CPU levels, of $wanted_levels if that is set, at which a decoder runs here; the portable one has to.
+# levels RUN: the CPU levels at which a decoder runs here, selected by $wanted_levels if that is set. The portable level is
+# required.
 levels()
 {
     local level
@@ -38,7 +39,8 @@ levels()
     done
 }
 
-# ask RUN: a decoder answers what the manifest asks, at each of its levels. Prints how many vectors and which levels, or what failed.
+# ask RUN: a decoder answers the requests of the manifest, at each of its levels. Prints the number of vectors and the levels, or
+# the failure.
 ask()
 {
     local level all vectors=0 done_levels=
@@ -56,7 +58,7 @@ ask()
     echo "$vectors vectors,$done_levels"
 }
 
-# each TARGET...: checks one after the other; the name may come with the prefix of make's target. Fails if one does.
+# each TARGET...: checks one after the other; a name may have the prefix of make's target. Fails if one fails.
 each()
 {
     local target result failed=0

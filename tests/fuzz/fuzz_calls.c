@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A life of the public decoder: the bytes behind the stream are a script of calls. Bytes are pushed to two decoders that share a
- * pool, with other calls in between, or read on demand from a source that fails, gives few bytes, or gives others than before.
- * After each failure everything is asked that can be asked.
+ * A sequence of calls to the public decoder. The bytes after the stream are a script of calls. Bytes are pushed to two decoders
+ * that share a pool, with other calls in between; or they are read on demand from a source that fails, returns few bytes, or
+ * returns changed bytes. After each failure all queries are made.
  */
 #include "fuzz.h"
 #include "stream_edit.h"
@@ -19,7 +19,7 @@
 #define MEMORY_MOST ((uint64_t)48 << 20)
 #define STEPS_MOST 400
 #define READS_MOST 100000
-#define HEAVY 2e8 /* products of a frame's networks, from which no frame is rendered */
+#define HEAVY 2e8 /* products of a frame's networks; frames are rendered only below this */
 
 const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/calls", "tests/fuzz/regressions/calls", NULL };
 
@@ -28,7 +28,7 @@ const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/calls", "tests/fuzz/r
 typedef struct script {
     const uint8_t *next;
     size_t left;
-    uint32_t state; /**< gives the bytes behind the end of the script */
+    uint32_t state; /**< generates further bytes after the end of the script */
 } script;
 
 static uint32_t draw(script *s)
@@ -68,11 +68,11 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max, unsigned 
 
 /* ---- Calls ---- */
 
-/** A decoder and its last answers. */
+/** A decoder and the results of earlier queries. */
 typedef struct patient {
     adcgs_decoder *d;
     int is_pushed;
-    int segments; /**< in its last facts; -1: none yet */
+    int segments; /**< from the last info; -1: none yet */
 } patient;
 
 static void check(adcgs_status status, const adcgs_error *error)
@@ -83,7 +83,7 @@ static void check(adcgs_status status, const adcgs_error *error)
                      !strchr(error->text, '\n'));
 }
 
-/** The stream's facts; 0: there are none yet. */
+/** Queries the stream's info; 0 if it is not available yet. */
 static int ask_info(patient *p, adcgs_info *info)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -123,7 +123,7 @@ static adcgs_camera any_camera(script *s, const adcgs_decoder *d)
     return c;
 }
 
-/** One frame, whose pixels are finite. */
+/** Renders one frame, and checks that its pixels are finite. */
 static adcgs_status ask_picture(patient *p, const adcgs_camera *camera, double time, int kind, adcgs_error *error)
 {
     float rgb[WIDTH * HEIGHT * 3] = { 0 }, depth[WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
@@ -149,7 +149,7 @@ static adcgs_status ask_primitives(patient *p, double time, adcgs_error *error)
     return status;
 }
 
-/** Calls that take no time and fail by their arguments alone. */
+/** Calls without a time, which fail only for invalid arguments. */
 static void ask_texts(patient *p, script *s)
 {
     adcgs_info info;
@@ -167,7 +167,7 @@ static void ask_texts(patient *p, script *s)
     FUZZ_REQUIRE(adcgs_get_info(p->d, &info, size, NULL) == ADCGS_OK);
 }
 
-/** One call that takes a time or a segment. */
+/** One call with a time or a segment. */
 static adcgs_status ask_one(patient *p, script *s, uint32_t kind)
 {
     adcgs_info info;
@@ -194,7 +194,7 @@ static adcgs_status ask_one(patient *p, script *s, uint32_t kind)
     return status;
 }
 
-/** Everything, as after each failure. */
+/** All calls, as after each failure. */
 static void ask_all(patient *p, script *s)
 {
     ask_texts(p, s);
@@ -231,7 +231,7 @@ static void configure(adcgs_config *config, script *s)
     config->memory_limit = memory & 1 ? (uint64_t)(memory + 1) << 13 : MEMORY_MOST;
 }
 
-/** A piece, or the end. Bytes are where nothing stands behind them. */
+/** Pushes a piece of the stream, or ends it. The piece is a copy, so that a sanitizer detects reads beyond its end. */
 static void push_on(way *w, script *s)
 {
     static const size_t sizes[] = { 0, 1, 13, 64, 300, 2000, 65536, 65536 };
@@ -292,7 +292,7 @@ typedef struct source {
     const uint8_t *data, *other;
     size_t size;
     script *script;
-    uint32_t faults; /**< of those above; 0: none from now on */
+    uint32_t faults; /**< flags from the enumeration above; 0: no faults from now on */
     int reads;
 } source;
 
@@ -310,7 +310,7 @@ static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
     return (int64_t)n;
 }
 
-/** The stream with some bytes changed, and right checksums. */
+/** The stream with some bytes changed, and correct checksums. */
 static uint8_t *change(const uint8_t *data, size_t size, script *s)
 {
     uint8_t *const other = fuzz_file(data, size);
@@ -320,7 +320,7 @@ static uint8_t *change(const uint8_t *data, size_t size, script *s)
     return other;
 }
 
-/** A source that has become reliable gives the models of the whole stream. */
+/** After its faults have ended, a source gives the models of the whole stream. */
 static void compare(patient *p, const source *from, const adcgs_config *config)
 {
     adcgs_decoder *whole = NULL;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Checkpoints from outside. The first byte chooses one that a run of our own has left, in the beginning, in the middle, or when
- * values are rounded; behind it are changes of eight bytes each, since a whole one would be found by no fuzzer: a byte that says
- * what and from where, three of a place, four of a value. A run that accepts it goes on for some iterations, and to its end. F is
- * a whole file.
+ * Untrusted checkpoints. The first byte selects a checkpoint of a generated run: at its beginning, in its middle, or when values
+ * are rounded. After it follow changes of eight bytes each, since no fuzzer would find a whole checkpoint: one byte for the kind
+ * of change and the range of places, three for the place, four for the value. A run that accepts the checkpoint continues for
+ * some iterations, up to its end. F marks a whole file.
  */
 #define _GNU_SOURCE
 
@@ -25,7 +25,7 @@ static const uint32_t stops[STAGES] = { 0, 12, 24, 38 };
 static adcgs_scene *scene;
 static adcgs_train_config config;
 static adcgs_buffer saved[STAGES];
-static adcgs_trainer *used; /* making one takes longer than all that is done to it */
+static adcgs_trainer *used; /* creating a trainer takes longer than all its tests */
 static char folder[] = "/tmp/adcgs-fuzz-XXXXXX";
 
 static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *at)
@@ -76,7 +76,7 @@ static adcgs_trainer *make(adcgs_error *error)
     return t;
 }
 
-/** The scene, whose pictures stay until the program ends, and the checkpoints of a run over it. */
+/** Makes the scene, whose images stay until the program ends, and the checkpoints of a run on it. */
 static void prepare(void)
 {
     const adcgs_scenes_options options = { .name = "tiny", .width = 8, .height = 8, .format = "ppm" };
@@ -96,7 +96,7 @@ static void prepare(void)
     adcgs_trainer_free(&t);
 }
 
-/** Apply the changes; the copy's size afterwards. */
+/** Applies the changes; returns the new size of the copy. */
 static size_t change(uint8_t *copy, size_t size, const uint8_t *data, size_t bytes)
 {
     for (int i = 0; i < CHANGES_MOST && bytes >= 8; i++, data += 8, bytes -= 8) {
@@ -108,7 +108,7 @@ static size_t change(uint8_t *copy, size_t size, const uint8_t *data, size_t byt
         case 0: copy[at] = data[4]; break;
         case 1: memcpy(copy + at, data + 4, 4); break;
         case 2: memset(copy + at, data[4], 8); break;
-        default: size = data[5] == 0 ? at : size; break; /* it ends there */
+        default: size = data[5] == 0 ? at : size; break; /* truncate */
         }
     }
     return size;
@@ -119,7 +119,7 @@ static void check(adcgs_status status, const adcgs_error *error)
     FUZZ_REQUIRE(status == ADCGS_OK || (error->status == status && error->text[0] && !strchr(error->text, '\n')));
 }
 
-/** Some iterations, and where that is its end a stream. */
+/** Runs some iterations; at the end of training also writes a stream. */
 static void go_on(adcgs_trainer *t)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -171,7 +171,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check(status, &error);
     if (status == ADCGS_OK)
         go_on(t);
-    /* What a run, or a failure, has left can be restored again. */
+    /* The trainer can be restored again after a run or a failure. */
     FUZZ_REQUIRE(adcgs_trainer_restore(t, saved[0].data, saved[0].size, &error) == ADCGS_OK);
     return 0;
 }

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The public decoder over whole streams. The last bytes choose limits, threads,
- * CPU level, layers and how the input arrives; a quarter of the streams that
- * decode is decoded a second time another way, with the same result. Checksums
- * are made right first, unless the choice says not to.
+ * The public decoder on whole streams. The last bytes choose limits, threads, CPU level, layers and the kind of input. A quarter
+ * of the streams that decode are decoded again in another way, with the same result. Checksums are corrected first, except if the
+ * choice excludes it.
  */
 #include "fuzz.h"
 #include "stream_edit.h"
@@ -15,11 +14,11 @@
 #define WIDTH 20
 #define HEIGHT 12
 #define MEMORY_MOST ((uint64_t)256 << 20)
-#define HEAVY 1e9 /* products of a picture's networks, from which a model is drawn at one moment alone */
+#define HEAVY 1e9 /* products of the networks for an image; above this a model is rendered only at one time */
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/decode", NULL };
 
-/** A source that gives at most step bytes at a time. */
+/** A source that returns at most step bytes at a time. */
 typedef struct dripping {
     const uint8_t *next;
     size_t left, step;
@@ -47,13 +46,13 @@ static adcgs_camera any_camera(const adcgs_decoder *d, int stored)
     return camera;
 }
 
-/** A moment that may lie in a fade. */
+/** A time that may be in a crossfade. */
 static double middle_of(const adcgs_info *info)
 {
     return 0.5 * info->time_start + 0.5 * info->time_end;
 }
 
-/** Everything a decoder can be asked; returns a checksum over the answers. */
+/** Makes all queries of a decoder; returns a checksum of the results. */
 static uint32_t ask(adcgs_decoder *d, int stored_camera)
 {
     adcgs_info info;
@@ -115,7 +114,7 @@ static int64_t read_anywhere(void *user, uint64_t offset, void *buffer, size_t b
     return (int64_t)bytes;
 }
 
-/** Read on demand or whole, a moment shows the same, also where a segment is faded in. */
+/** Read on demand or as a whole, a stream gives the same frames, also in a crossfade. */
 static void compare_frames(adcgs_decoder *a, adcgs_decoder *b, double time)
 {
     float rgb[2][WIDTH * HEIGHT * 3];
@@ -126,7 +125,9 @@ static void compare_frames(adcgs_decoder *a, adcgs_decoder *b, double time)
     FUZZ_REQUIRE(status != ADCGS_OK || memcmp(rgb[0], rgb[1], sizeof rgb[0]) == 0);
 }
 
-/** On demand, from the last segment to the first: the models of the whole stream, if that is one; else any that pass. */
+/**
+ * Reads on demand, from the last segment to the first: gives the models of the whole stream if that decodes, else any valid ones.
+ */
 static void seek(const uint8_t *data, size_t size, const adcgs_config *config)
 {
     anywhere source = { data, size };
@@ -152,7 +153,10 @@ static void seek(const uint8_t *data, size_t size, const adcgs_config *config)
     adcgs_close(&d);
 }
 
-/** Pushed in pieces, and drawn on the way: in the end what reading in order gives, models or failure, less what is forgotten. */
+/**
+ * Pushes the stream in pieces, with queries in between. The final models or failure are those of reading in order, except
+ * discarded segments.
+ */
 static void push(const uint8_t *data, size_t size, const adcgs_config *config, size_t step, int forgets)
 {
     adcgs_decoder *d = NULL, *whole = NULL;
@@ -181,7 +185,7 @@ static void push(const uint8_t *data, size_t size, const adcgs_config *config, s
     adcgs_close(&d);
 }
 
-/** From somewhere on, as one who comes late. */
+/** Starts in the middle, as in tune-in. */
 static void join(const uint8_t *data, size_t size, const adcgs_config *config, size_t step, uint8_t where)
 {
     adcgs_config how = *config;
@@ -190,7 +194,9 @@ static void join(const uint8_t *data, size_t size, const adcgs_config *config, s
     push(data + at, size - at, &how, step, 0);
 }
 
-/** As a damaged stream: one that is whole has no faults, and its models; of any other what is found can be drawn. */
+/**
+ * Decodes as a damaged stream. A valid stream has no faults, and its own models; the recovered parts of others can be rendered.
+ */
 static void conceal(const uint8_t *data, size_t size, const adcgs_config *config)
 {
     adcgs_config how = *config;
@@ -217,8 +223,8 @@ static void conceal(const uint8_t *data, size_t size, const adcgs_config *config
 }
 
 /**
- * Level 1, or 2 if the choice says so, in place of a level above. Networks as large as level 1 allows still take seconds each
- * time, and some twenty with sanitizers and without SIMD; those of level 3 may take minutes.
+ * Limits the level to 1, or to 2 if the choice says so. The largest networks of level 1 take seconds each time, and about twenty
+ * seconds with sanitizers and without SIMD; those of level 3 may take minutes.
  */
 static void tame_level(uint8_t *stream, size_t size, int level)
 {

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Positions: every GEOM of a stream, whatever else the stream holds. What decodes must survive coding it again. */
+/**
+ * \file Positions: every GEOM of a stream, independent of the rest. Decoded positions are the same when coded and decoded again.
+ */
 #include "fuzz.h"
 #include "stream_edit.h"
 
 #include "geom/geom.h"
 
 #define ANCHORS_MAX 20000U
-#define FIXED_BYTES 21 /* elements in front of the positions */
-#define COUNT_BYTES 4  /* of these, in predicted segments, which have the grid of the one before */
-#define PREDICTED_AT 20 /* in SEGM */
+#define FIXED_BYTES 21 /* elements before the positions */
+#define COUNT_BYTES 4  /* these alone in predicted segments, which use the grid of the previous segment */
+#define PREDICTED_AT 20 /* offset in SEGM */
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/geom", NULL };
 

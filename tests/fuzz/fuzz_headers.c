@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The payloads of all chunks, each parsed by itself whatever its checksum and
- * place; HEAD, SEGM, KEEP, cams and meta that are valid are written and read
- * again, what depends on the segment before as if that had a few anchors of 0.
+ * The payloads of all chunks, each parsed alone, whatever its checksum and place. Valid HEAD, SEGM, KEEP, cams and meta are
+ * written and read again. Parts that depend on the previous segment use one with a few anchors of zeros.
  */
 #include "fuzz.h"
 #include "stream_edit.h"
@@ -11,7 +10,7 @@
 #include "model/model_priv.h"
 #include "stream/parts.h"
 
-#define BEFORE 60U /* anchors of the segment before one that is predicted */
+#define BEFORE 60U /* anchors of the segment before a predicted one */
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/headers", NULL };
 
@@ -25,7 +24,7 @@ static adcgs_parse parse_of(const uint8_t *data, size_t size)
     return p;
 }
 
-/** cams or meta: what can be read can be written, and reading that gives the same bytes when written once more. */
+/** cams or meta: a valid chunk can be written and read, and writing it again gives the same bytes. */
 static void try_extras(const uint8_t *data, size_t size, part_parse parse, part_write write)
 {
     adcgs_stream first, second;
@@ -58,7 +57,7 @@ static int try_head(const uint8_t *data, size_t size, adcgs_stream *stream)
     if (adcgs_head_parse(&p, &head, stream) != ADCGS_OK)
         return 0;
     adcgs_buffer_init(&out);
-    stream->n_segments = head.segments; /* the writer counts its models; there are none here */
+    stream->n_segments = head.segments; /* the writer counts its models, and here it has none */
     FUZZ_REQUIRE(adcgs_head_write(&out, stream, head.max_anchors, NULL) == ADCGS_OK);
     stream->n_segments = 0;
     FUZZ_REQUIRE(out.size == size && memcmp(out.data, data, size) == 0);
@@ -78,7 +77,7 @@ static void try_segm(const uint8_t *data, size_t size, const adcgs_stream *strea
     if (adcgs_segm_parse(&p, stream, &model, &ids, ticks) != ADCGS_OK)
         return;
     adcgs_buffer_init(&out);
-    if (adcgs_segm_write(&out, stream, &model, &ids, NULL) == ADCGS_OK) { /* ticks of huge time bases need not come back */
+    if (adcgs_segm_write(&out, stream, &model, &ids, NULL) == ADCGS_OK) { /* may fail: huge time bases lose ticks */
         adcgs_model again = { .params = stream->params };
         adcgs_role_ids same;
         p = parse_of(out.data, out.size);
@@ -96,7 +95,7 @@ static void require_same(const adcgs_keep *a, const adcgs_keep *b, const adcgs_m
         FUZZ_REQUIRE(memcmp(a->rows[g], b->rows[g], before->n * (size_t)adcgs_keep_channels(&before->params, g) * 2) == 0);
 }
 
-/** What is kept of the segment before: coded again, it is the same, if not in the same bytes. */
+/** KEEP, the data of inter-segment prediction: equal when coded and read again, possibly in other bytes. */
 static void try_keep(const uint8_t *data, size_t size, const adcgs_model *before)
 {
     adcgs_keep kept = { .n = 0 }, again = { .n = 0 };
@@ -117,7 +116,7 @@ static void try_keep(const uint8_t *data, size_t size, const adcgs_model *before
     adcgs_buffer_clear(&out);
 }
 
-/** The segment before: all its latents are 0, or near the limits, where differences are clipped. */
+/** The previous segment: all latents are 0, or near the limits, where differences are clipped. */
 static void make_before(adcgs_model *before, const adcgs_params *params)
 {
     adcgs_model_clear(before, NULL);
@@ -129,7 +128,7 @@ static void make_before(adcgs_model *before, const adcgs_params *params)
     }
 }
 
-/** The elements that every chunk could begin with, at any place. */
+/** The elements that can begin a chunk, at every place. */
 static void try_elements(const uint8_t *data, size_t size)
 {
     adcgs_parse p = parse_of(data, size);
@@ -154,7 +153,7 @@ static void try_elements(const uint8_t *data, size_t size)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     adcgs_model before = { .n = 0 };
-    adcgs_stream stream, second; /* second: the same with a segment in front, for what is predicted */
+    adcgs_stream stream, second; /* second: the same with a previous segment, for predicted parts */
     adcgs_found_chunk c;
     int has_head = 0;
     adcgs_stream_init(&stream);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Scenes in the layout of HyperNeRF from outside: dataset.json, metadata.json, scene.json, the camera of the image a and
- * points.npy in this order, each of the first four ended by a zero byte. The only picture there is is empty.
+ * Untrusted scenes in the layout of HyperNeRF: dataset.json, metadata.json, scene.json, the camera of the image a and points.npy,
+ * in this order, each of the first four ended by a zero byte. The only image is empty.
  */
 #define _GNU_SOURCE
 

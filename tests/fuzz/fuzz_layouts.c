@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Scenes of LLFF and COLMAP, scene files and splats from outside. The first byte says which: L poses_bounds.npy, B a binary model
- * of COLMAP, T the same in text, M two of these, S a scene file, G splats as a scene, P the layout of Dynamic 3D Gaussians. Files
- * follow each other, each but the last after its length in two bytes. There are two small pictures for all.
+ * Untrusted scenes of LLFF and COLMAP, scene files and splats. The first byte selects the kind: L poses_bounds.npy, B a binary
+ * model of COLMAP, T the same in text, M two of these, S a scene file, G splats as a scene, P the layout of Dynamic 3D Gaussians.
+ * The files follow one after the other; each except the last has its length in two bytes in front. All kinds share two small
+ * images.
  */
 #define _GNU_SOURCE
 
@@ -15,12 +16,12 @@
 
 const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/layouts", "tests/fuzz/regressions/layouts", NULL };
 
-#define PICTURE "P5\n24 16\n255\n" /* and as many pixels, all black */
+#define PICTURE "P5\n24 16\n255\n" /* followed by as many pixels, all black */
 
-/** The files of each kind; the pictures come last. */
+/** The files of each kind; the images come last. */
 static const struct kind {
     char letter;
-    const char *scene; /* "" is the folder */
+    const char *scene; /* "" for the folder */
     const char *files[5];
     int n;
 } kinds[] = {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Footage that comes while it is learnt: Y4M from a file that grows in two steps; the first byte says how much is there at once.
+ * Untrusted footage for live encoding: Y4M from a file that grows in two steps. The first byte gives the size of the first step.
  */
 #define _GNU_SOURCE
 
@@ -19,14 +19,14 @@ static void check(adcgs_status status, const adcgs_error *error)
     FUZZ_REQUIRE(status == ADCGS_OK || (error->status == status && error->text[0] && !strchr(error->text, '\n')));
 }
 
-/** A second each. */
+/** One second each. */
 static uint32_t stretch_of(void *user, double time)
 {
     (void)user;
     return time > 0 ? (uint32_t)fmin(time, STRETCHES - 1) : 0;
 }
 
-/** Decide what can be decided. */
+/** Processes all available frames. */
 static adcgs_status take(adcgs_live_camera *camera, const adcgs_live_limits *limits, adcgs_error *error)
 {
     adcgs_status status = ADCGS_OK;
@@ -69,7 +69,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     adcgs_live_camera_init(&camera, &source, 0);
     adcgs_status status = take(&camera, &limits, &error);
     check(status, &error);
-    write_outside_file(video, data, bytes); /* the same file, which is longer */
+    write_outside_file(video, data, bytes); /* the same file, now longer */
     limits.is_end = 1;
     if (status == ADCGS_OK)
         check(take(&camera, &limits, &error), &error);

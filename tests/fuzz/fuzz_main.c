@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Runs a fuzz target without a fuzzing engine: over the files and folders
- * named, or over the target's seeds, each as it is and with a number of
- * mutations that depends on nothing but the file. Under libFuzzer this main is
- * the weaker one.
+ * Runs a fuzz target without a fuzzing engine, on the given files and folders or on the target's seeds. Each file is tested
+ * unchanged, and with several mutations that depend only on the file. libFuzzer's main replaces this weak one.
  *
- * ADCGS_FUZZ_ROUNDS sets the mutations of each seed.
+ * ADCGS_FUZZ_ROUNDS is the number of mutations of each seed.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -20,7 +18,7 @@
 #define INPUT_MAX ((size_t)1 << 22)
 #define ROUNDS 6
 
-/* Absent in targets whose inputs are no streams. */
+/* Absent in targets whose inputs are not streams. */
 __attribute__((weak)) size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max, unsigned int seed);
 
 typedef struct replay {
@@ -34,7 +32,7 @@ static uint32_t draw(uint64_t *state, uint32_t n)
     return (uint32_t)((*state >> 33) % n);
 }
 
-/** One change, decided by the bytes themselves. */
+/** One change, determined by the bytes themselves. */
 __attribute__((weak)) size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t max)
 {
     static const uint8_t telling[] = { 0, 1, 2, 127, 128, 129, 254, 255 };
@@ -65,7 +63,7 @@ __attribute__((weak)) size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t
 
 static void try_input(replay *r, const uint8_t *data, size_t size)
 {
-    uint8_t *copy = malloc(size + (size == 0)); /* exactly as many bytes: a sanitizer sees one too far */
+    uint8_t *copy = malloc(size + (size == 0)); /* exact size, so that a sanitizer detects a read beyond the end */
     FUZZ_REQUIRE(copy != NULL);
     memcpy(copy, data, size);
     LLVMFuzzerTestOneInput(copy, size);
@@ -86,7 +84,7 @@ static void replay_bytes(replay *r, const uint8_t *seed, size_t size)
         for (uint32_t changes = 1 + draw(&state, 3); changes > 0; changes--) {
             const unsigned int chance = (unsigned int)draw(&state, UINT32_MAX);
             if (n > 0)
-                data[n - 1] ^= (uint8_t)chance; /* the last byte chooses what the target does, and makes rounds differ */
+                data[n - 1] ^= (uint8_t)chance; /* the last byte selects the target's options, and makes rounds differ */
             n = LLVMFuzzerCustomMutator ? LLVMFuzzerCustomMutator(data, n, max, chance) : LLVMFuzzerMutate(data, n, max);
         }
         try_input(r, data, n);
@@ -111,7 +109,7 @@ static void replay_file(replay *r, const char *path)
 
 static void replay_path(replay *r, const char *path)
 {
-    struct stat info = {0}; /* MemorySanitizer does not know every name under which the C library has stat() */
+    struct stat info = {0}; /* MemorySanitizer does not know every name of stat() in the C library */
     if (stat(path, &info) != 0 || !S_ISDIR(info.st_mode)) {
         replay_file(r, path);
         return;
@@ -138,9 +136,9 @@ __attribute__((weak)) int main(int argc, char **argv)
     for (size_t i = 0; argc == 1 && adcgs_fuzz_seeds[i]; i++) {
         char path[4096];
         snprintf(path, sizeof path, "%s/%s", top ? top : ".", adcgs_fuzz_seeds[i]);
-        if (access(path, R_OK) == 0) /* a target without regressions has no folder of them */
+        if (access(path, R_OK) == 0) /* a target without regressions does not have that folder */
             replay_path(&r, path);
     }
-    printf("%lu inputs made of %lu files\n", r.inputs, r.files);
+    printf("%lu inputs from %lu files\n", r.inputs, r.files);
     return r.files > 0 ? 0 : 1;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Manifests of conformance suites from outside. */
+/** \file Untrusted manifests of conformance suites. */
 #define _GNU_SOURCE
 
 #include "outside_file.h"

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Networks: every NETW of a stream under the parameters of its HEAD. Those that
- * are valid are written and read again, and the integer ones evaluated with
- * every kernel that this machine has.
+ * Networks: every NETW of a stream, with the parameters of its HEAD. Valid networks are written and read again; the integer
+ * networks are evaluated with every kernel of this machine.
  */
 #include "fuzz.h"
 #include "stream_edit.h"
@@ -16,7 +15,7 @@
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/net", NULL };
 
-/** All outputs of a network at a CPU level, for inputs that fill the whole range. */
+/** All outputs of a network at a CPU level, for inputs over the whole range. */
 static uint32_t evaluate(const adcgs_net *net, adcgs_cpu_level cpu)
 {
     const size_t n_in = adcgs_net_inputs(net), channels = adcgs_net_channels(net);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What a live run has left, from outside, when it is to go on: each segment that it gives can be written and read again, and
- * behind the last it gives none, however often it is asked.
+ * Untrusted stream of an earlier live run, to be resumed. Each segment that the reader gives can be written and read again. After
+ * the last segment it gives no more, however often it is called.
  */
 #define _GNU_SOURCE
 
@@ -19,7 +19,7 @@ static void check(adcgs_status status, const adcgs_error *error)
     FUZZ_REQUIRE(status == ADCGS_OK || (error->status == status && error->text[0] && !strchr(error->text, '\n')));
 }
 
-/** As adcgs-enc goes on with it: the last segment is held back. */
+/** Resumes as adcgs-enc does: the last segment is held back. */
 static void go_on(adcgs_past *past)
 {
     adcgs_encode_live live = { .max_anchors = 0 };
@@ -37,7 +37,7 @@ static void go_on(adcgs_past *past)
         status = n++ ? adcgs_encode_live_add(&live, &last, &bytes, &error) :
                        adcgs_encode_live_go_on(&live, &past->stream, ANCHORS, ADCGS_CPU_SCALAR, NULL, &error);
         check(status, &error);
-        FUZZ_REQUIRE(status != ADCGS_ERR_INTERNAL); /* else it is not what was read */
+        FUZZ_REQUIRE(status != ADCGS_ERR_INTERNAL); /* else it differs from the segment that was read */
         adcgs_model_clear(&last, NULL);
         adcgs_buffer_clear(&bytes);
         last = model;

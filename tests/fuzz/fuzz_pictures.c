@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Pictures and clouds of points from outside, told by content: PGM and PPM by our own code, PNG and JPEG through libraries, whose
- * errors are ours to handle; NPY and PLY. What is large is only probed: memory for it is no fault.
+ * Untrusted images and point clouds, detected by content: PGM and PPM with the project's own code; PNG and JPEG through
+ * libraries, with the project's error handling; NPY and PLY. Large inputs are only probed: running out of memory is no fault.
  */
 #define _GNU_SOURCE
 
@@ -63,7 +63,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     snprintf(path, sizeof path, "%s/file", folder);
     write_outside_file(path, data, size);
     read_image(path);
-    if (size < 5 || memcmp(data, "DRACO", 5) != 0) /* a library's own reader */
+    if (size < 5 || memcmp(data, "DRACO", 5) != 0) /* Draco files are read by a library */
         read_points(path);
     unlink(path);
     rmdir(folder);

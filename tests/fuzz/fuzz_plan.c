@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Plans of segments from outside. */
+/** \file Untrusted plans of segments. */
 #define _GNU_SOURCE
 
 #include "outside_file.h"

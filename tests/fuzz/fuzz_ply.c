@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file PLY files from outside. */
+/** \file Untrusted PLY files. */
 #include "fuzz.h"
 
 #include "io/points.h"

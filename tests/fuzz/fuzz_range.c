@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The range coder: a program of operations, taken from the first bytes and
- * repeated, is decoded from the others. What decodes cleanly must survive
- * coding it again.
+ * The range coder: a program of operations, taken from the first bytes and repeated, is decoded from the other bytes. Values that
+ * decode without an error are the same when coded and decoded again.
  */
 #include "fuzz.h"
 
@@ -13,7 +12,7 @@
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/range", NULL };
 
-/** Both directions of the same program. */
+/** Encoder and decoder of the same program. */
 typedef struct coder {
     const uint8_t *program;
     adcgs_range_dec *dec;

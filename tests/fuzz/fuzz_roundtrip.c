@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Valid streams: the bytes choose parameters and sizes and seed the rest. What
- * is written must be read as it was, by any number of threads, and writing what
- * was read must give the same bytes.
+ * Valid streams: the bytes choose parameters and sizes, and seed the rest. A written stream is read back unchanged with any
+ * number of threads, and writing it again gives the same bytes.
  */
 #include "fuzz.h"
 #include "random_model.h"
@@ -63,7 +62,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     adcgs_stream stream;
     adcgs_buffer bytes;
     adcgs_pool *pool = NULL;
-    const size_t n = ADCGS_MIN(size, sizeof choice); /* the end, where the mutations are that every stream has */
+    const size_t n = ADCGS_MIN(size, sizeof choice); /* the end, since it differs between the mutations of every stream */
     if (n > 0)
         memcpy(choice, data + size - n, n);
     const adcgs_params params = params_of(choice);

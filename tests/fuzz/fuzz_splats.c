@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file PLY files of splats from outside. */
+/** \file Untrusted PLY files of splats. */
 #include "fuzz.h"
 
 #include "io/splats.h"
@@ -8,7 +8,7 @@
 
 const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/splats", "tests/fuzz/seeds/ply", NULL };
 
-/** What is accepted is what the header promises. */
+/** Accepted splats fulfil the promises of the header. */
 static void check(const adcgs_splats *s)
 {
     FUZZ_REQUIRE(s->n > 0 && s->n <= ADCGS_SPLATS_MAX && (s->degree == 0) == (s->harmonics == NULL));

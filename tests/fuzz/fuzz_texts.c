@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Small files from outside that say what to do, and texts of command lines. The first byte says which: C a camera path, L a scene
- * file of footage that is yet to come, P a script of the player, R requests for digests, A a table of another method, J the
- * sweep.json of an earlier sweep, G a grid, F a range of frames, N frames per second, Y the first line of Y4M, S settings of the
- * trainer, O what spoils a scene, B a budget; H the lines of a web server's answer.
+ * Untrusted small control files, and texts of command lines. The first byte selects the kind: C, H, U a camera path, L a scene
+ * file of future footage, P a script of the player, R requests for digests, A a table of another method, J the sweep.json of an
+ * earlier sweep, G a grid, F a range of frames, N frames per second, Y the first line of Y4M, S settings of the trainer, O faults
+ * of a scene, B a budget; H also the header lines of a web server.
  */
 #define _GNU_SOURCE
 
@@ -77,7 +77,7 @@ static adcgs_status read_requests(const char *path, adcgs_error *error)
     return status;
 }
 
-/** A plan is a megabyte; nothing but curves is added to it. */
+/** A plan takes a megabyte, so it is allocated. The readers only add curves to it. */
 static adcgs_status read_curves(const char *path, int is_table, adcgs_error *error)
 {
     adcgs_sweep_plan *plan = calloc(1, sizeof *plan);
@@ -193,7 +193,7 @@ static void parse_budget(const char *text)
     FUZZ_REQUIRE(status != ADCGS_OK || (budget.of != ADCGS_BUDGET_NONE && budget.most > 0 && budget.most < 2e12));
 }
 
-/** A range is one of bytes that there are; what goes back to the server is one line. */
+/** A parsed range is inside the file; a text that is returned to the server is one line. */
 static void parse_head(const char *text)
 {
     adcgs_http_head head = { .first = ADCGS_HTTP_UNKNOWN, .size = ADCGS_HTTP_UNKNOWN };
@@ -207,7 +207,7 @@ static void parse_head(const char *text)
     FUZZ_REQUIRE(!strpbrk(head.tag, "\r\n") && !strpbrk(head.modified, "\r\n"));
 }
 
-/** Texts that are no files. */
+/** Texts that are not files. */
 static const struct {
     char letter;
     void (*parse)(const char *text);

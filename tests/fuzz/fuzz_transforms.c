@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Scenes as JSON files from outside: cameras, times, splits, names. The only picture there is is a small one. */
+/** \file Untrusted scenes as JSON files: cameras, times, splits, names. The only image is a small one. */
 #define _GNU_SOURCE
 
 #include "outside_file.h"
@@ -7,7 +7,7 @@
 #include "layouts/transforms.h"
 #include "layouts/transforms_check.h"
 
-#define PICTURE "P5\n24 16\n255\n" /* and as many pixels, all black */
+#define PICTURE "P5\n24 16\n255\n" /* followed by as many pixels, all black */
 
 const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/transforms", "tests/fuzz/regressions/transforms", NULL };
 

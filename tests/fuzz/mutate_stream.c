@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The mutator of targets that read streams: it changes what chunks hold, and
- * their order and headers, and leaves a stream whose checksums are right, since
- * nobody finds a CRC by trying.
+ * The mutator of targets that read streams. It changes payloads, the order of chunks and their headers. The checksums of the
+ * result are correct, since a fuzzer does not find a CRC by chance.
  */
 #include "fuzz.h"
 #include "stream_edit.h"
@@ -28,7 +27,7 @@ static uint32_t draw(uint32_t *state, uint32_t n)
     return (uint32_t)((uint64_t)*state * n >> 32);
 }
 
-/** Put new bytes in place of a span. Returns the new size, or the old one if there is no room. */
+/** Replaces a range of bytes. Returns the new size, or the old one if there is no room. */
 static size_t replace(uint8_t *data, size_t size, size_t max, size_t at, size_t old, const uint8_t *bytes, size_t n)
 {
     if (n > old && n - old > max - size)
@@ -43,7 +42,7 @@ static size_t chunk_end(const adcgs_found_chunk *c)
     return c->payload + c->length + (c->complete ? 4 : 0);
 }
 
-/** What a payload holds: in a layer of the same size, so that its slices still fill it; elsewhere of any. */
+/** Mutates a payload. That of a layer keeps its size, so that its slices still fill it; others may change theirs. */
 static size_t mutate_payload(uint8_t *data, size_t size, size_t max, const adcgs_found_chunk *c)
 {
     const int layer = adcgs_type_layer(c->type) >= 0;
@@ -56,7 +55,7 @@ static size_t mutate_payload(uint8_t *data, size_t size, size_t max, const adcgs
     FUZZ_WRITTEN(&n, sizeof n);
     FUZZ_WRITTEN(copy, room + 1);
     if (layer && n < c->length) {
-        memmove(copy + c->length - n, copy, n); /* the slices' bytes stay where they were */
+        memmove(copy + c->length - n, copy, n); /* the slices' bytes keep their place at the end */
         memcpy(copy, data + c->payload, c->length - n);
         n = c->length;
     }
@@ -106,7 +105,7 @@ size_t adcgs_mutate_stream(uint8_t *data, size_t size, size_t max, unsigned int 
     return size;
 }
 
-/* Of targets whose input is a stream and nothing else. */
+/* For targets whose input is a stream and nothing else. */
 __attribute__((weak)) size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max, unsigned int seed)
 {
     return adcgs_mutate_stream(data, size, max, seed);

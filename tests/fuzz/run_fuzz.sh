@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# Builds the fuzz targets with clang and libFuzzer in fuzz-build/ and runs each of them for some seconds.
+# Builds the fuzz targets with clang and libFuzzer in fuzz-build/ and runs each of them for SECONDS.
 # usage: run_fuzz.sh SRCDIR SECONDS [TARGET...]
-# SANITIZE=memory builds the targets of the library alone with MemorySanitizer instead; JOBS sets make's -j.
-# What the fuzzer finds stays in fuzz-build/corpus/TARGET, and the input of a fault in fuzz-build/faults/.
+# SANITIZE=memory builds only the targets of the library, with MemorySanitizer instead; JOBS sets make's -j.
+# The fuzzer's new inputs stay in fuzz-build/corpus/TARGET, inputs that cause faults in fuzz-build/faults/.
 set -u
 top=$(cd "$1" && pwd) || exit 3
 seconds=$2
@@ -15,7 +15,7 @@ targets=(range geom net headers decode calls roundtrip ply splats transforms hyp
 options=()
 if [ "$sanitize" = memory ]; then
     targets=(range geom net headers decode calls roundtrip)
-    options=(--disable-encoder) # the libraries that it needs are not instrumented
+    options=(--disable-encoder) # the encoder's libraries are not instrumented
 fi
 [ $# -gt 0 ] && targets=("$@")
 
@@ -26,7 +26,7 @@ if [ ! -f Makefile ]; then
     "$top/configure" -q --disable-shared --disable-hardening "${options[@]}" CC=clang CXX=clang++ CFLAGS="$flags" CXXFLAGS="$flags" ||
         exit 3
 fi
-make -s am--refresh >build.log 2>&1 || { tail build.log; exit 3; } # by itself: LDFLAGS below would get into configure's tests
+make -s am--refresh >build.log 2>&1 || { tail build.log; exit 3; } # separately: LDFLAGS below would affect configure's tests
 programs=("${targets[@]/#/tests/fuzz/fuzz_}")
 make -s -j "${JOBS:-2}" "${programs[@]}" LDFLAGS="-fsanitize=fuzzer,$sanitize" >build.log 2>&1 || { tail build.log; exit 3; }
 
@@ -41,7 +41,7 @@ seeds()
     [ -d "$top/tests/fuzz/regressions/$1" ] && echo "$top/tests/fuzz/regressions/$1"
 }
 
-# Small vectors with a script of calls behind them, without those that are made to take long.
+# Small vectors followed by a script of calls, without the vectors that are designed to take long.
 script_vectors()
 {
     find "$top/conformance/vectors" -type f -size -8k | grep -v -e level -e limit -e widest -e many -e work | while read -r vector; do

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Editing of streams that need not be valid. */
+/** \file Editing of streams that may be invalid. */
 #include "stream_edit.h"
 
 #include "base/digest.h"
@@ -18,7 +18,7 @@ int adcgs_next_chunk(const uint8_t *data, size_t size, size_t *pos, adcgs_found_
     return 1;
 }
 
-/** The checksums in a table of slices, as far as table and slices can be followed. */
+/** Corrects the checksums in a table of slices, as far as the table and the slices are intact. */
 static void repair_slices(uint8_t *payload, size_t length)
 {
     adcgs_reader r, table;

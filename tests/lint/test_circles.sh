@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# No circle of files: what a file includes, and what defines the symbols that its object refers to, can be read and tested before
-# it. Rooms are guarded by test_includes.sh, files by this.
+# There is no circle of files: a file can be read and tested after the files that it includes, and after those that define its
+# symbols. test_includes.sh checks the order of folders, this test that of files.
 set -u
 command -v nm >/dev/null && command -v tsort >/dev/null || exit 77
 source=$(cd "${srcdir:-.}" && pwd) || exit 99
@@ -11,7 +11,7 @@ faults=0
 
 (cd "$source" && find codec src -name '*.[ch]' -o -name '*.cc') | sort >"$dir/files"
 
-# include_edges: lines FILE:#include... of our files to lines FROM TO.
+# include_edges: turns lines FILE:#include... of the project's files into lines FROM TO.
 include_edges()
 {
     sed -nE 's/^([^:]*): *# *include *["<]([^">]*)[">].*/\1 \2/p' | awk '
@@ -20,7 +20,7 @@ include_edges()
               if ((top[i] $2) in have) print $1, top[i] $2 }' "$dir/files" -
 }
 
-# Objects and their sources: DIR/[.libs/][TARGET-]STEM.o is of DIR/STEM.c. What an older state of the tree left is not looked at.
+# Objects and their sources: DIR/[.libs/][TARGET-]STEM.o belongs to DIR/STEM.c. Outdated objects are ignored.
 find codec src -name '*.o' | awk '
     NR == FNR { if (sub(/\.cc?$/, "")) have[$1] = 1; next }
     { stem = $1; sub(/\.o$/, "", stem); sub(/\.libs\//, "", stem)
@@ -32,7 +32,8 @@ find codec src -name '*.o' | awk '
     [ "$object" -ot "$source/$file" ] || echo "$object $file"
 done >"$dir/objects"
 
-# reference_edges: lines of nm -A -P to lines FROM TO. Only our own symbols count; what sanitizers add has other names.
+# reference_edges: turns lines of nm -A -P into lines FROM TO. Only the project's symbols count; those of sanitizers have other
+# names.
 reference_edges()
 {
     awk '
@@ -50,7 +51,7 @@ reference_edges()
         }' "$dir/objects" -
 }
 
-# has_circle FILE: whether these edges make a circle; names its files.
+# has_circle FILE: whether these edges contain a circle; prints its files.
 has_circle()
 {
     tsort "$1" 2>&1 >/dev/null | sed 's/^tsort: //; s/^.*loop.*/circle:/' | grep .
@@ -62,18 +63,18 @@ include_edges <"$dir/includes" | sort -u >"$dir/include_edges"
 reference_edges <"$dir/symbols" | sort -u >"$dir/reference_edges"
 sort -u "$dir/include_edges" "$dir/reference_edges" >"$dir/edges"
 for kind in include reference; do
-    [ "$(wc -l <"$dir/${kind}_edges")" -ge 100 ] || { echo "fewer than 100 edges of kind $kind: are they read?" >&2; faults=1; }
+    [ "$(wc -l <"$dir/${kind}_edges")" -ge 100 ] || { echo "fewer than 100 edges of kind $kind" >&2; faults=1; }
 done
 
 has_circle "$dir/edges" >&2 && faults=1
 
-# The check would notice: a file that comes to refer to one that refers to it, and the same among includes.
+# The check detects a planted circle: a reference back from a file to one that refers to it, and the same for includes.
 read -r from to < <(grep '^codec/' "$dir/reference_edges") || faults=1
 used=$(awk -v file="$to" '$2 == file { print $1; exit }' "$dir/objects")
 symbol=$(awk -v file="$from" 'NR == FNR { source[$1 ":"] = $2; next }
     source[$1] == file && $2 ~ /^_?adcgs_/ && $3 !~ /[Uwv]/ { print $2; exit }' "$dir/objects" "$dir/symbols")
 { cat "$dir/symbols"; echo "$used: $symbol U         "; } | reference_edges >"$dir/planted"
-has_circle "$dir/planted" | grep -qxF "$from" || { echo "a planted circle of references is not noticed" >&2; faults=1; }
+has_circle "$dir/planted" | grep -qxF "$from" || { echo "a planted circle of references is not detected" >&2; faults=1; }
 { cat "$dir/includes"; echo 'codec/base/base.h:#include "base/pool.h"'; } | include_edges >"$dir/planted"
-has_circle "$dir/planted" | grep -qxF codec/base/pool.h || { echo "a planted circle of includes is not noticed" >&2; faults=1; }
+has_circle "$dir/planted" | grep -qxF codec/base/pool.h || { echo "a planted circle of includes is not detected" >&2; faults=1; }
 exit $faults

@@ -1,10 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# configure --disable-encoder: the library, adcgs-dec and adcgs-info build with a C compiler and nothing else. The linker is taken
-# for one that cannot version symbols: the library exports the same names then.
+# configure --disable-encoder: the library, adcgs-dec and adcgs-info need nothing but a C compiler. The build assumes a linker
+# that cannot version symbols; the library exports the same names then.
 set -u
 source=$(cd "${srcdir:-.}" && pwd) || exit 99
-# A tree that is configured in place cannot be configured elsewhere too.
+# A tree configured in place cannot be configured elsewhere, too.
 [ -x "$source/configure" ] && [ ! -f "$source/config.status" ] || { echo "skipped: the source tree is configured in place"; exit 77; }
 dir=$(mktemp -d) || exit 99
 trap 'rm -rf "$dir"' EXIT

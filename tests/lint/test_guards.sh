@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# Flags that would change frames are refused: by the compiler where a macro shows them, else when a decoder opens.
+# Compiler flags that would change frames are rejected: by the compiler if a macro shows them, else when a decoder is opened.
 set -u
 source=${srcdir:-.}
 dir=$(mktemp -d) || exit 99
@@ -20,7 +20,7 @@ int main(void)
 }
 END
 include=(-I"$source/codec" -I"$source/codec/include" -std=c11 -fno-math-errno)
-# What the check itself needs, compiled once; strict.c is compiled with the flags in question.
+# Other files of the check, compiled once; strict.c is compiled with the tested flags.
 files=()
 for file in "$dir/main.c" "$source"/codec/base/{cpu,status,crc32c}.c; do
     files+=("$dir/$(basename "$file" .c).o")
@@ -34,7 +34,7 @@ fault()
     faults=$((faults + 1))
 }
 
-# allowed COMPILER FLAG...: a decoder built so opens.
+# allowed COMPILER FLAG...: a decoder built with these flags opens.
 allowed()
 {
     tried=$((tried + 1))
@@ -42,7 +42,7 @@ allowed()
         fault "$*: $(cat "$dir/log" "$dir/out")"
 }
 
-# refused_by_compiler COMPILER FLAG...: an #error of base.h.
+# refused_by_compiler COMPILER FLAG...: an #error in base.h.
 refused_by_compiler()
 {
     tried=$((tried + 1))
@@ -51,7 +51,7 @@ refused_by_compiler()
     grep -q 'error.*adcgs \(must not be built\|needs\)' "$dir/log" || fault "$*: $(head -n 5 "$dir/log")"
 }
 
-# refused_at_open COMPILER FLAG...: compiles, and the check says ADCGS_ERR_FPENV.
+# refused_at_open COMPILER FLAG...: it compiles, and the check returns ADCGS_ERR_FPENV.
 refused_at_open()
 {
     tried=$((tried + 1))
@@ -60,7 +60,7 @@ refused_at_open()
     [ $? -eq 1 ] || fault "$*: $(cat "$dir/out")"
 }
 
-# As the library does it: the kernels of AVX2 with their own flags, and with a flag of the user's.
+# As in the library: AVX2 kernels with their own flags, and with a flag of the user.
 contracted_kernels()
 {
     tried=$((tried + 1))
@@ -70,7 +70,7 @@ contracted_kernels()
     [ $? -eq 1 ] && grep -q avx2 "$dir/out" || fault "$1: contracted AVX2 kernels: $(cat "$dir/out")"
 }
 
-# Objects that were compiled well, linked with -ffast-math: the start-up code flushes subnormals.
+# Objects compiled correctly, but linked with -ffast-math: the start-up code flushes subnormal numbers.
 flushed_by_linking()
 {
     tried=$((tried + 1))

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# libadcgs is a pure C library: it needs the C library, its mathematics and threads, and exports what its headers declare and the
-# list in the tree records, each symbol with the version that brought it.
+# libadcgs is a pure C library. It needs the C library with mathematics and threads. It exports the symbols that its headers
+# declare and the list in the tree records, each with the version that introduced it.
 set -u
 library=.libs/libadcgs.so
 [ -f "$library" ] || { echo "skipped: no shared library in this build"; exit 77; }
@@ -28,7 +28,7 @@ compare()
     faults=1
 }
 
-# The recorded list: "name version" lines from the linker's script; without versions where the linker knows none.
+# The recorded list: "name version" lines from the linker's script; without versions if the linker does not support them.
 map="${srcdir:-.}/codec/api/libadcgs.map"
 recorded=$(sed -n -e 's/^\(ADCGS_[0-9.]*\) {$/\1/p' -e 's/^ *\(adcgs_[a-z0-9_]*\);$/\1/p' "$map" |
     awk '/^ADCGS_/ { version = $1; next } { print $1, version }' | sort -u)
@@ -41,9 +41,9 @@ else
     echo "symbols have no versions here"
 fi
 
-# Nothing of the programs: what they exit with, how they parse, what they print.
+# The headers contain nothing of the programs: exit codes, parsing of options, output.
 if grep -n -i -E 'exit.?code|getopt|argv|stdio\.h|adcgs_cli|ADCGS_PRINTF' "$headers"/*.h >&2; then
-    echo "the installed headers hold what is the programs'" >&2
+    echo "the installed headers contain parts of the programs" >&2
     faults=1
 fi
 

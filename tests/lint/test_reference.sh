@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# Each function of the library has a page in section 3 that names it and shows it as the headers declare it; each page says what
-# can be asked of a page, without a warning; and the headers describe everything, as doxygen sees it. Runs in the build folder.
+# Each function of the library has a page in section 3 that names it and shows the declaration of the headers. Each page has the
+# usual sections and no warnings. The headers document everything, according to doxygen. Runs in the build folder.
 set -u
 top=${srcdir:-.}
 faults=0
@@ -12,7 +12,7 @@ fault()
     faults=$((faults + 1))
 }
 
-# The declarations of the headers, one on a line, without what only a compiler wants.
+# The declarations of the headers, one a line, without annotations for compilers.
 declarations=$(cat "$top"/codec/include/adcgs/*.h | tr '\n' ' ' | grep -o 'ADCGS_API [^;#]*;' | sed 's/^ADCGS_API //' | tr -s ' ')
 functions=$(sed -n 's/^ *\(adcgs_[a-z0-9_]*\);$/\1/p' "$top/codec/api/libadcgs.map")
 [ "$(wc -l <<<"$functions")" -gt 20 ] || fault "no functions found in libadcgs.map"
@@ -43,9 +43,9 @@ for file in "$top"/man/*.3; do
     if command -v groff >/dev/null && [ -n "$(groff -man -ww -Tutf8 "$file" 2>&1 >/dev/null)" ]; then
         fault "$file: groff warns: $(groff -man -ww -Tutf8 "$file" 2>&1 >/dev/null | head -n 1)"
     fi
-    # Pages that are referred to exist.
+    # The pages in references exist.
     while read -r name section; do
-        [ -f "$top/man/${name//\\/}.$section" ] || fault "$file refers to $name($section), which is not there"
+        [ -f "$top/man/${name//\\/}.$section" ] || fault "$file refers to $name($section), which does not exist"
     done < <(sed -n 's/^\.[BR]*R* *(* *\([a-z\\_0-9-]*\)[ "(]*(\([13]\)).*/\1 \2/p' "$file")
 done
 
@@ -54,11 +54,11 @@ if grep -q '^DOXYGEN = .' Makefile; then
     trap 'rm -rf "$dir"' EXIT
     doxygen - >"$dir/log" 2>&1 < <(cat doc/Doxyfile; echo "OUTPUT_DIRECTORY = $dir") || fault "doxygen: $(cat "$dir/log")"
     [ -s "$dir/reference/decoder_8h.html" ] || fault "doxygen wrote no pages"
-    # It would say so.
+    # The check detects a missing description.
     mkdir "$dir/bad" && printf '/** \\file\n * x */\nint adcgs_undescribed(int number);\n' >"$dir/bad/bad.h"
     doxygen - >"$dir/log" 2>&1 < <(cat doc/Doxyfile; echo "OUTPUT_DIRECTORY = $dir"; echo "INPUT = $dir/bad") &&
         fault "doxygen accepts a function without a description"
 else
-    echo "no doxygen: its part is left out"
+    echo "no doxygen: the headers are not checked"
 fi
 [ "$faults" -eq 0 ]

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The specification builds to HTML and PDF without a warning (a missing glyph is one), and the PDF shows what only some fonts
-# have. ADCGS_FULL=1: once more by make html pdf, to the same bytes.
+# The specification builds to HTML and PDF without a warning (a missing glyph is one), and the PDF contains characters that only
+# some fonts have. ADCGS_FULL=1: built again by make html pdf, with the same bytes.
 set -u
 command -v asciidoctor >/dev/null && command -v asciidoctor-pdf >/dev/null || { echo "skipped: no asciidoctor"; exit 77; }
 top=$(cd "${srcdir:-.}" && pwd) || exit 99
@@ -31,9 +31,9 @@ if command -v pdftotext >/dev/null; then
         grep -q "$sign" "$dir/text" || { echo "the PDF does not show $sign" >&2; faults=1; }
     done
 else
-    echo "skipped: signs that the PDF shows: no pdftotext"
+    echo "skipped: characters in the PDF: no pdftotext"
 fi
-# Both pages hold the tables byte for byte, and the figures.
+# Both documents contain the tables byte for byte, and the figures.
 python3 - "$dir/1.html" "$dir/1.pdf" "$top/spec" <<'END' || faults=1
 import base64, os, re, sys, zlib
 

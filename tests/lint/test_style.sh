@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# What every source file has (licence line, a word on what it is for) and has not (tabs, trailing blanks, lines of over 130 columns).
+# Every source file has a licence line and a comment on its purpose. No file has tabs, trailing blanks, or lines of over 130
+# columns.
 set -u
 cd "${srcdir:-.}" || exit 99
 faults=0

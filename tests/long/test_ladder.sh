@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# The ladder: scenes of rising complexity, whose truth is known, are coded by default, and bytes and structure follow what there is
-# to model: make -C build check-long. One thread each, JOBS of them at once (default 2), about seven minutes of a processor. The
-# figures stay in the folder LADDER (default ladder), and what is there is not made anew. Nothing is asked of time.
+# The ladder: scenes of rising complexity with known truth are encoded by default, and bytes and structure follow the complexity:
+# make -C build check-long. One thread each, JOBS of them at once (default 2), about seven minutes of a processor. The figures
+# stay in the folder LADDER (default ladder); existing ones are kept. Times are not tested.
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-demo-scene adcgs-enc adcgs-eval adcgs-info
@@ -10,7 +10,7 @@ ladder=${LADDER:-ladder}
 iterations=${ITERATIONS:-1500}
 mkdir -p "$ladder"
 
-# rungs: NAME SCENE OPTIONS of adcgs-demo-scene; behind " // " those of adcgs-enc
+# rungs: NAME SCENE OPTIONS of adcgs-demo-scene; after " // " those of adcgs-enc
 rungs()
 {
     cat <<EOF
@@ -33,7 +33,7 @@ dome dome --format png // -n 6000
 EOF
 }
 
-# climb NAME SCENE OPTIONS...: the rung's stream, and what is said of it.
+# climb NAME SCENE OPTIONS...: makes the stream of a rung, and its reports.
 climb()
 {
     name=$1 scene=$2
@@ -59,9 +59,9 @@ if [ "${1:-}" = climb ]; then
     climb "$@"
     exit $failed
 fi
-rungs | xargs -P "${JOBS:-2}" -L 1 sh "$0" climb || { echo "FAIL: the ladder could not be climbed"; exit 1; }
+rungs | xargs -P "${JOBS:-2}" -L 1 sh "$0" climb || { echo "FAIL: a rung of the ladder failed"; exit 1; }
 
-# figure RUNG NAME: a number of its report, or 0.
+# figure RUNG NAME: a number from its report, or 0.
 figure() { sed -n "s/^ *\"$2\": \([0-9.]*\),*$/\1/p" "$ladder/$1.json" | head -n 1 | grep . || echo 0; }
 size() { wc -c <"$ladder/$1.adcgs"; }
 has_network() { grep -q "\"$2\":" "$ladder/$1.json"; }
@@ -74,14 +74,14 @@ moving()
     fi
 }
 
-# at_most PERCENT RUNG OF_RUNG WHY: bytes.
+# at_most PERCENT RUNG OF_RUNG WHY: compares bytes.
 at_most()
 {
     [ $((100 * $(size "$2"))) -le $(($1 * $(size "$3"))) ] ||
         bad "$4: $2 has $(size "$2") bytes, more than $1 % of the $(size "$3") of $3"
 }
 
-# at_least DB RUNG WHY: PSNR of its test views.
+# at_least DB RUNG WHY: compares the PSNR of the test views.
 psnr() { sed -n 's/^ *"psnr": \([0-9.]*\).*/\1/p' "$ladder/$1.eval" | tail -n 1; }
 at_least()
 {
@@ -96,26 +96,26 @@ rungs | while read -r name rest; do
 done | tee "$ladder/figures.txt"
 
 for name in object object-noise object-half pair table table-noise table-half table-long table-cameras; do
-    [ "$(moving $name)" -eq 0 ] || bad "nothing moves in $name, but $(moving $name) anchors do"
+    [ "$(moving $name)" -eq 0 ] || bad "$name is static, but $(moving $name) anchors are dynamic"
     [ "$(figure $name time_rows)" -eq 0 ] || bad "$name has a time table"
 done
 for name in cross20 several hinge soft split drops; do
-    [ "$(moving $name)" -gt 0 ] || bad "what moves in $name is taken as still"
-    [ $((2 * $(moving $name))) -lt "$(figure $name anchors)" ] || bad "half of $name moves"
+    [ "$(moving $name)" -gt 0 ] || bad "$name is dynamic, but all anchors are static"
+    [ $((2 * $(moving $name))) -lt "$(figure $name anchors)" ] || bad "half of the anchors of $name are dynamic"
 done
-at_most 95 object pair "one thing costs less than two"
+at_most 95 object pair "one object costs less than two"
 at_most 199 pair object "a second copy costs less than the first"
-at_most 60 pair table "two things cost less than a table full"
+at_most 60 pair table "two objects cost less than a full table"
 for name in cross20 several hinge soft split drops; do
-    at_most 99 table $name "what moves has its price"
+    at_most 99 table $name "motion costs bytes"
 done
-at_most 99 cross20 several "one that moves costs less than three"
-at_most 120 object-noise object "noise is not learnt"
-at_most 110 table-noise table "noise is not learnt"
-at_most 80 object-half object "small pictures need less"
-at_most 80 table-half table "small pictures need less"
-at_most 103 table-long table "a still scene costs as much however long it lasts"
-at_most 110 table-cameras table "more cameras show the same"
-at_least 27.7 dome "exposures that differ by two stops do not end in haze"
+at_most 99 cross20 several "one moving object costs less than three"
+at_most 120 object-noise object "noise is not trained"
+at_most 110 table-noise table "noise is not trained"
+at_most 80 object-half object "small images need fewer bytes"
+at_most 80 table-half table "small images need fewer bytes"
+at_most 103 table-long table "the cost of a static scene does not depend on its length"
+at_most 110 table-cameras table "more cameras of the same scene cost little"
+at_least 27.7 dome "exposures that differ by two stops cause no haze"
 [ $failed -eq 0 ] && echo "PASS: the ladder" || echo "FAIL: the ladder"
 exit $failed

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""The Python package gives what the programs give. Run by test_python.sh in the build folder, with VECTORS and OUT set."""
+"""The Python package gives the results of the programs. Run by test_python.sh in the build folder, with VECTORS and OUT set."""
 import hashlib
 import io
 import os
@@ -23,7 +23,7 @@ def dec(*arguments):
 
 
 def plain_camera(info, width=96, height=64):
-    """A camera that looks at the scene from some way off, for streams that store none."""
+    """A camera at some distance from the scene, for streams without cameras."""
     x, y, z = info.scene_origin
     pose = (1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z - 2.5 * info.scene_scale)
     return adcgs.Camera(width, height, 90.0, 95.0, 47.0, 33.0, pose, 0.01)
@@ -57,7 +57,7 @@ class Streams(unittest.TestCase):
         self.assertRaises(ValueError, adcgs.frame_digest, frame[0])
 
     def test_any_camera(self):
-        """A camera that the stream does not store, by the program's requests."""
+        """A camera that is not in the stream, compared with the program's answers to requests."""
         for path in (MOVING, LONG):
             with adcgs.open(path, threads=2) as stream:
                 info = stream.info
@@ -94,7 +94,7 @@ class Streams(unittest.TestCase):
             self.assertTrue(all(array.dtype == np.float32 for array in splats + slots))
 
     def test_gsplat_cameras(self):
-        """viewmats and Ks give the frames of the cameras that they are made of, but for rounding in the camera's place."""
+        """viewmats and Ks give the frames of their cameras, except for rounding of the camera's position."""
         with adcgs.open(STILL) as stream:
             camera = stream.camera(0)
             self.assertTrue(np.allclose(camera.viewmat @ camera.camtoworld, np.eye(4), atol=1e-12))
@@ -160,7 +160,7 @@ class Sources(unittest.TestCase):
                 self.check(stream)
 
     def test_push(self):
-        """Any number of bytes at a time; what is there can be asked for as it comes."""
+        """Any number of bytes at a time; available parts can be queried at once."""
         for step in (1, 97, len(self.data)):
             stream, brought, drawn = adcgs.open_push(), [], 0
             self.assertRaises(adcgs.UsageError, lambda: stream.info)
@@ -196,7 +196,7 @@ class Sources(unittest.TestCase):
 
 class Failures(unittest.TestCase):
     def test_the_librarys_line(self):
-        """The exception's text is what the program prints."""
+        """The exception's text is the message of the program."""
         for name, kind in (("bad-geom-anchors-0", adcgs.DataError), ("no-such", adcgs.ReadError)):
             path = str(vectors / f"{name}.adcgs")
             printed = subprocess.run(["./adcgs-dec", path, "--md5"], capture_output=True, text=True).stderr
@@ -236,7 +236,7 @@ class Failures(unittest.TestCase):
         self.assertIn("warning", [level for level, _ in told])
 
     def test_without_numpy(self):
-        """What gives no array works; what does says what is missing."""
+        """Without NumPy, calls that return arrays raise ImportError; the others work."""
         code = ("import sys; sys.modules['numpy'] = None\nimport adcgs\ns = adcgs.open(sys.argv[1])\n"
                 "print(s.info.cameras, s.cameras[0].fx, s.splat_digest(0.0))\n"
                 "try:\n    s.render(0.0)\nexcept ImportError as e:\n    print(e)")

@@ -19,7 +19,7 @@ faults = []
 
 
 def members(struct):
-    """Names of a struct's members, in order, as the header has them."""
+    """Names of a struct's members, in the order of the header."""
     body = re.search(r"typedef struct %s \{(.*?)\} %s;" % (struct, struct), text, re.S).group(1)
     return [re.search(r"(\w+)\s*(\[[^\]]*\])?$", line.strip()).group(1) for line in body.split(";") if line.strip()]
 
@@ -46,7 +46,7 @@ def compare_names():
 
 
 def compare_prototypes():
-    """Each function of the headers, with as many parameters; but for adcgs_pool_wrap(), which lends C's threads."""
+    """Each function of the headers, with its number of parameters; except adcgs_pool_wrap(), which takes threads of C."""
     theirs = {}
     for name, parameters in re.findall(r"ADCGS_API [^;(]*?(adcgs_\w+)\(([^;]*)\);", text, re.S):
         theirs[name] = 0 if parameters.strip() == "void" else parameters.count(",") + 1
@@ -56,7 +56,7 @@ def compare_prototypes():
 
 
 def compare_layouts():
-    """A C program prints sizes and places of all members."""
+    """A C program prints sizes and offsets of all members."""
     lines = ['#include <adcgs/adcgs.h>', '#include <stdio.h>', 'int main(void) {']
     ours = []
     for struct in _structs.STRUCTS:

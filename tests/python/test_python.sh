@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The Python package against the built library and the programs: layouts, digests, streams in parts, failures; and as installed.
+# The Python package, compared with the built library and the programs: layouts, digests, streams in parts, failures; and as
+# installed.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-info
 library=$PWD/.libs/libadcgs.so
@@ -25,13 +26,13 @@ in_tree()
 in_tree test_layout.py "$source" "$dir" $compiler
 in_tree test_adcgs.py
 
-# A package that is not installed says what it wants, and a library that is none is named.
+# A package that is not installed names the missing variable, and an invalid library is named.
 ran sh -c "! PYTHONPATH='$source/python' ADCGS_LIBRARY= '$python' -c 'import adcgs'"
 grep -q 'ImportError: adcgs: this package was not installed; ADCGS_LIBRARY' "$dir/log" || { bad "ADCGS_LIBRARY"; cat "$dir/log"; }
 ran sh -c "! PYTHONPATH='$source/python' ADCGS_LIBRARY='$dir/none.so' '$python' -c 'import adcgs'"
 grep -q "ImportError: adcgs: $dir/none.so" "$dir/log" || { bad "the library's name"; cat "$dir/log"; }
 
-# Installed, it finds the library that came with it, wherever both are moved.
+# Installed, it finds the library that was installed with it, even if both are moved.
 unset MAKEFLAGS MFLAGS MAKELEVEL ADCGS_LIBRARY
 if grep -q '^install-pkgpythonPYTHON:' Makefile; then
     ran make install-libLTLIBRARIES install-pkgpythonPYTHON install-nodist_pkgpythonPYTHON DESTDIR="$dir/root"
@@ -41,7 +42,7 @@ if grep -q '^install-pkgpythonPYTHON:' Makefile; then
         'import adcgs, sys; print(adcgs.open(sys.argv[1]).model_digest(0), adcgs.__file__)' "$VECTORS/good-sys-cams.adcgs"
     grep -q "^[0-9a-f]* $package$" "$dir/log" || { bad "another package"; cat "$dir/log"; }
     ran make uninstall-pkgpythonPYTHON uninstall-nodist_pkgpythonPYTHON DESTDIR="$dir/root"
-    [ -z "$(find "$dir/root" -path '*/adcgs/*.py')" ] || bad "files of the package are left behind"
+    [ -z "$(find "$dir/root" -path '*/adcgs/*.py')" ] || bad "files of the package remain"
 else
     echo "skipped: installing the package: configured without Python"
 fi

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# Anchors and bytes over training, a line for each strength: gnuplot -e "data='FILE'; chart='FILE.svg'; n=N" growth.gp; blocks of
-# data, each with its strength as a heading, have columns iteration, anchors, kilobytes.
+# Anchors and bytes over training, a line for each strength: gnuplot -e "data='FILE'; chart='FILE.svg'; n=N" growth.gp. Each block
+# of data has its strength as a heading, and columns iteration, anchors, kilobytes.
 set terminal svg size 330,250 dynamic font 'sans-serif,10'
 set output chart
 set grid

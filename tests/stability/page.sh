@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# The page of the failure suite, to be read with `.` after rows.sh: one file that needs no other.
+# The page of the failure suite, to be read with `.` after rows.sh: a self-contained file.
 
 text() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g'; }
 
@@ -20,17 +20,17 @@ h2 { font-size: 16px; margin: 0 0 0.3em; } p { margin: 0.3em 0; } .broken { colo
 </style>
 <h1>Where quality breaks</h1>
 <p>Scenes of one difficulty each, 96x96 pixels, in graded strength, coded by default with $iterations iterations; seeds: $1. PSNR of
-views that training never saw, in dB. A class breaks at the first strength at which what is measured of it is 3 dB below that of the
-first, or below 20 dB. Pictures: the worst view of each strength, its truth, decoded, and four times the difference. Static variance
-(in millionths; true in brackets) and flicker (in thousandths) are of a camera that stays; anchors are those at the end, and the most
-there were; beside that, anchors and bytes over training, a line for each strength.</p>
+views that training never saw, in dB. A class breaks at the first strength at which its measured PSNR is 3 dB below that of the
+first, or below 20 dB. Images: the worst view of each strength, original, decoded, and four times the difference. Static variance
+(in millionths; the original's in brackets) and flicker (in thousandths) are those of a fixed camera. Anchors are those at the
+end, and the maximum. The charts show anchors and bytes over training, a line for each strength.</p>
 EOF
 }
 
 # page_figures CLASS: its part of the table.
 page_figures()
 {
-    echo '<table><tr><th>strength<th>seed<th>all<th>moves<th>worst<th>its moves<th>static<th>flicker<th>bytes<th>anchors</tr>'
+    echo '<table><tr><th>strength<th>seed<th>all<th>moving<th>worst<th>worst moving<th>static<th>flicker<th>bytes<th>anchors</tr>'
     awk -F, -v class="$1" '$1 == class {
         printf "<tr><td>%s<td>%s<td>%s<td>%s<td>%s<td>%s<td>%s<td>%s<td>%s<td>%s</tr>\n", $2, $3, $4, $5, $6, $7,
             $11 == "" ? "" : sprintf("%.0f (%.0f)", 1e6 * $11, 1e6 * $12), $13 == "" ? "" : sprintf("%.1f", 1e3 * $13), $14,
@@ -39,7 +39,7 @@ page_figures()
     echo '</table>'
 }
 
-# page_views LINE SEED: pictures of a class.
+# page_views LINE SEED: images of a class.
 page_views()
 {
     for strength in $(field 3 "$1"); do
@@ -64,7 +64,7 @@ growth()
     done
 }
 
-# svg FILE: as it is part of a page.
+# svg FILE: its content for inclusion in a page.
 svg() { sed '1,/<svg/{/<?xml/d;/<!DOCTYPE/d;/ *"http.*dtd">/d}' "$1"; }
 
 # page_growth LINE SEED NAME

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# What a run of the failure suite gave, to be read with `.` after runs.sh.
+# Results of a run of the failure suite, to be read with `.` after runs.sh.
 
 columns=class,strength,seed,psnr,moving,worst,worst_moving,fitted,fitted_moving,ssim,static_variance,true_static_variance,flicker,\
 bytes,anchors,most_anchors,primitives,worst_view,said
 
-# least COLUMN FILE: of a table of views, its value and the number of the view; nothing where there is none.
+# least COLUMN FILE: the minimum of a column in a table of views, and the number of the view; nothing without values.
 least()
 {
     awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
@@ -12,21 +12,21 @@ least()
         END { if (best != "") print best, view }' "$2"
 }
 
-# shown MEASURE STEM: the picture of the worst view, as adcgs-eval numbers them.
+# shown MEASURE STEM: the image of the worst view, with adcgs-eval's numbering.
 shown()
 {
     worst=$(least "$(case $1 in all | fitted) echo psnr ;; *) echo dynamic_psnr ;; esac)" "$2.csv")
     [ -n "$worst" ] && find "$2.views" -name "$(printf '%04d' "${worst#* }")-*.png" | head -n 1
 }
 
-# figure FORMAT VALUE: empty stays empty.
+# figure FORMAT VALUE: formats a value; an empty one stays empty.
 figure()
 {
     # shellcheck disable=SC2059
     [ -z "$2" ] || printf "$1" "$2"
 }
 
-# row CLASS STRENGTH SEED MEASURE STEM: of stability.csv.
+# row CLASS STRENGTH SEED MEASURE STEM: a row of stability.csv.
 row()
 {
     stem=$5
@@ -49,7 +49,7 @@ row()
         "$(sed 's/"/""/g' "$stem.said" | tr '\n' ' ' | sed 's/ *$//')"
 }
 
-# all_rows SEEDS...: of all that has been run.
+# all_rows SEEDS...: rows of all finished runs.
 all_rows()
 {
     echo "$columns"
@@ -63,7 +63,8 @@ all_rows()
     done
 }
 
-# summary TABLE CLASS MEASURE: a line for each strength, the mean over seeds of what is measured, its spread, and that of all.
+# summary TABLE CLASS MEASURE: a line for each strength: the mean over seeds of the measured PSNR, its spread, and the means of
+# all PSNRs.
 summary()
 {
     awk -F, -v class="$2" -v measure="$3" 'BEGIN { column = measure == "all" ? 4 : measure == "moving" ? 5 : measure == "fitted" ? 8 : 7 }
@@ -83,8 +84,8 @@ summary()
         }' "$1"
 }
 
-# breaks TABLE CLASS MEASURE: the first strength at which what is measured is 3 dB below that of the first, or below 20 dB, or
-# there is nothing to measure.
+# breaks TABLE CLASS MEASURE: the first strength at which the measured PSNR is 3 dB below that of the first strength, or below 20
+# dB, or missing.
 breaks()
 {
     summary "$@" | awk 'NR == 1 { first = $2 } ($2 == "-" || $2 < first - 3.0 || $2 < 20.0) && !found { print $1; found = 1 }

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# Runs of the failure suite, to be read with `.` in the build folder, after classes.sh: a scene, its stream, what is measured of it.
-#   STABILITY   folder of all of it (default stability)
+# Runs of the failure suite, to be read with `.` in the build folder, after classes.sh: a scene, its stream, its figures.
+#   STABILITY   folder for all results (default stability)
 #   ITERATIONS  of training (default 800)
 stability=${STABILITY:-stability}
 iterations=${ITERATIONS:-800}
 common="--size 96x96 --moments 24 --watch 24 --format ppm --threads 1 -q"
 
-# field N LINE: of a class.
+# field N LINE: a field of a class.
 field() { printf '%s\n' "$2" | cut -d '|' -f "$1"; }
 
-# options_of OPTIONS STRENGTH: of adcgs-demo-scene.
+# options_of OPTIONS STRENGTH: the options with the strength in place of @.
 options_of()
 {
     if [ "$2" = 0 ]; then
@@ -19,17 +19,18 @@ options_of()
     fi
 }
 
-# run_name OPTIONS: of a run; runs made alike are one.
+# run_name OPTIONS: the name of a run; equal runs have the same name.
 run_name() { printf '%s\n' "$1" | sed 's/--scene //; s| // --set |-|; s/ --/-/g; s/ /-/g'; }
 
 # scene_of OPTIONS, learn_of OPTIONS: those of adcgs-demo-scene, and those of adcgs-enc.
 scene_of() { printf '%s\n' "${1%% // *}"; }
 learn_of() { case $1 in *" // "*) printf '%s\n' "${1#* // }" ;; esac; }
 
-# value NAME FILE: of a report as JSON, or of a whole evaluation, not of a view; nothing where it is null.
+# value NAME FILE: a value of a JSON report, or of a whole evaluation (not of a view); nothing if it is null.
 value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }
 
-# run OPTIONS SEED: unless it is there. What the encoder says is kept without its progress. A refusal is a result, too.
+# run OPTIONS SEED: does nothing if the result exists. The encoder's messages are kept, without its progress. An error is a
+# result, too.
 run()
 {
     scene=$stability/scenes/$(run_name "$(scene_of "$1")")
@@ -51,7 +52,7 @@ run()
         ./adcgs-eval "$stem.adcgs" "$scene" --split val --metrics static-variance,flicker --json >"$stem.val" 2>"$stem.err" ||
             echo "adcgs-eval fails" >>"$stem.said"
     else
-        echo "adcgs-enc leaves with $code" >>"$stem.said"
+        echo "adcgs-enc exits with $code" >>"$stem.said"
         for part in test val csv; do
             : >"$stem.$part"
         done

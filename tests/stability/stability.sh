@@ -1,12 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Where methods fail: make -C build stability. Scenes of one difficulty each, in graded strength (classes.sh), are coded by default,
-# one thread, and measured on views that training never saw. Writes stability.csv, a chart of each class, and all of it as one page,
-# stability.html. What is there is not made anew, so that it can go on. About half an hour of one processor for each seed.
-#   STABILITY   folder of all of it (default stability)
+# The limits of the method: make -C build stability. Scenes of one difficulty each, in graded strength (classes.sh), are encoded
+# by default with one thread, and measured on views that training never saw. Writes stability.csv, a chart of each class, and all
+# results on one page, stability.html. Existing results are kept, so that the script can be continued. About half an hour of one
+# processor for each seed.
+#   STABILITY   folder for all results (default stability)
 #   ITERATIONS  of training (default 800)
 #   SEEDS       default 1; 1,2,3 for the spread
-#   CLASSES     a basic regular expression of those that are wanted (default all)
+#   CLASSES     a basic regular expression that selects classes (default all)
 set -u
 here=$(cd "${srcdir:-.}" && pwd)/tests/stability
 . "$here/classes.sh"

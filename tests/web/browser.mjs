@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// A browser without a window, driven by what browsers themselves offer: Chromium by a pipe (its debugging protocol), Firefox by a
-// socket (Marionette). No package of npm's is needed.
+// A headless browser, controlled by its own interface: Chromium through a pipe (its debugging protocol), Firefox through a socket
+// (Marionette). No npm package is needed.
 //
 //   const browser = await openBrowser('chromium' or 'firefox', command, folder for its profile, { width, height });
 //   await browser.go(url); await browser.run('script, which may return a promise'); await browser.shot('file.png');
@@ -12,7 +12,7 @@ import { join } from 'node:path';
 
 const ANSWER_MS = 120000;
 
-/** Answers by the number of their question. */
+/** Pending requests by number, and their answers. */
 class Questions {
     constructor() {
         this.waiting = new Map();

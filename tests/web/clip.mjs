@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-2-Clause
 // The page of a clip in a browser: node clip.mjs chromium|firefox COMMAND FOLDER; in the build folder. FOLDER has clip.adcgs and
-// clip.html. It plays, and its frames are adcgs-dec's; exits with 1 if not.
+// clip.html. Checks that the page plays, and that its frames are those of adcgs-dec; exits with 1 if not.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -22,13 +22,13 @@ const browser = await openBrowser(kind, command, profile, { width: 800, height: 
 try {
     await browser.go(url(''));
     const played = await browser.run(`${until}
-        await until(() => window.adcgs && adcgs.state === 'complete' && adcgs.picture, 'picture');
+        await until(() => window.adcgs && adcgs.state === 'complete' && adcgs.picture, 'image');
         const first = adcgs.view.call.view_frame();
         document.getElementById('exact').dispatchEvent(new KeyboardEvent('keydown', { key: ' ', bubbles: true }));
-        await until(() => adcgs.view.call.view_playing() && adcgs.view.call.view_frame() !== first, 'other frame while it plays');
+        await until(() => adcgs.view.call.view_playing() && adcgs.view.call.view_frame() !== first, 'other frame while playing');
         return adcgs.message;`);
     if (played)
-        throw new Error(`it says ${played}`);
+        throw new Error(`message of the page: ${played}`);
     if (process.env.ADCGS_SHOTS)
         await browser.shot(join(process.env.ADCGS_SHOTS, `${kind}-clip.png`));
     await browser.go(url(`?md5=${FRAMES}`));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Fused multiply-adds where rounding twice goes wrong, and elsewhere: prints a digest of some millions of results. Compiled for
- * this machine they are the C library's, for WebAssembly those of base/fma_wasm.h, one by one and four at a time.
+ * Fused multiply-adds, mostly in cases where rounding twice gives another result: prints a digest of some millions of results. On
+ * this machine they are those of the C library, on WebAssembly those of base/fma_wasm.h, one by one and four at a time.
  */
 #include "base/digest.h"
 #include "base/fmath.h"
@@ -20,7 +20,7 @@ static uint32_t draw(void)
     return state;
 }
 
-/* Few bits and many, of every exponent: sums that lie on ties, or hide them, and subnormal ones. */
+/* Numbers with few and with many bits, of every exponent: sums that are ties, or nearly so, and subnormal ones. */
 static float number(int kind)
 {
     const uint32_t sign = draw() & 0x80000000u;
@@ -29,12 +29,12 @@ static float number(int kind)
     return adcgs_bits_float(sign | exponent << 23 | (draw() & few & 0x7fffff));
 }
 
-/* An addend about as large as the product, or half an ulp of it away, where a tie is near. */
+/* An addend about as large as the product, or half an ulp of it away, near a tie. */
 static float addend(float a, float b, int kind)
 {
     const float p = a * b;
     if (kind == 1)
-        return adcgs_bits_float((draw() & 0x80ffffffu) >> (draw() & 7)); /* about the least that is normal */
+        return adcgs_bits_float((draw() & 0x80ffffffu) >> (draw() & 7)); /* about the smallest normal number */
     if (kind < 4)
         return number(kind);
     const float half = adcgs_bits_float(draw() & 1 ? adcgs_float_bits(p) - (24u << 23) : adcgs_float_bits(p) + (24u << 23));
@@ -52,7 +52,7 @@ static uint32_t together(const float a[4], const float b[4], const float c[4], i
 #endif
 }
 
-/* Of NaN there is but one here. */
+/* All NaNs count as the same. */
 static uint32_t same_nan(uint32_t bits)
 {
     return (bits & 0x7fffffff) > 0x7f800000 ? 0x7fc00000 : bits;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// The page in a browser, against the programs: node page.mjs chromium|firefox COMMAND FOLDER [full]; in the build folder. FOLDER
-// has s.adcgs, cut.adcgs, stub.adcgs (its first layer is cut off), bad.adcgs, share.html (s.adcgs in it) and player.html. Prints
-// what differs; exits with 1 if something does.
+// The page in a browser, compared with the programs: node page.mjs chromium|firefox COMMAND FOLDER [full]; in the build folder.
+// FOLDER has s.adcgs, cut.adcgs, stub.adcgs (its first layer is cut off), bad.adcgs, share.html (with s.adcgs in it) and
+// player.html. Prints the differences; exits with 1 if there are any.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
@@ -10,7 +10,7 @@ import { pathToFileURL } from 'node:url';
 import { openBrowser } from './browser.mjs';
 
 const [kind, command, folder, full] = process.argv.slice(2);
-const shots = process.env.ADCGS_SHOTS; // a folder for pictures to look at
+const shots = process.env.ADCGS_SHOTS; // a folder for screenshots
 let failed = 0;
 
 function check(condition, text) {
@@ -41,10 +41,10 @@ const until = async (what, why) => {
     throw new Error('no ' + why + ': ' + JSON.stringify(adcgs.state) + ' ' + adcgs.message + ' ' + JSON.stringify(adcgs.notes));
 };
 const isLast = () => adcgs.picture && adcgs.picture.generation === adcgs.generation;
-const settled = () => until(() => adcgs.state === 'failed' || (adcgs.state === 'complete' && isLast()), 'picture');
+const settled = () => until(() => adcgs.state === 'failed' || (adcgs.state === 'complete' && isLast()), 'image');
 const pointer = (type, x, y, id = 1, kind = 'mouse') => document.getElementById('stage').dispatchEvent(new PointerEvent(type,
     { pointerId: id, pointerType: kind, clientX: x, clientY: y, button: 0, buttons: 1, bubbles: true }));
-Element.prototype.setPointerCapture = () => undefined; // those of pointers that are not there
+Element.prototype.setPointerCapture = () => undefined; // simulated pointers cannot be captured
 const key = name => ['keydown', 'keyup'].forEach(type => document.getElementById('exact').dispatchEvent(
     new KeyboardEvent(type, { key: name, bubbles: true, cancelable: true })));
 const drop = (bytes, name) => {
@@ -69,7 +69,7 @@ async function shot(name) {
         await browser.shot(join(shots, `${kind}-${name}.png`));
 }
 
-/** The page's exact picture against the program's. */
+/** Compares the page's exact image with the program's. */
 function samePicture(picture, file, text, ...options) {
     const time = String(picture.time);
     same(picture.digest, native(file, '--time', time, '--size', `${picture.width}x${picture.height}`, ...options)[0], text);
@@ -84,7 +84,7 @@ async function digests() {
         same(got, expected.slice(0, got.length), `frames of share.html${query}`);
         check(got.length >= 2, 'too few frames');
         const { module, threads } = await run('return report();');
-        same(module, query.includes('exact') ? 'exact' : 'relaxed', 'the module that draws');
+        same(module, query.includes('exact') ? 'exact' : 'relaxed', 'the module in use');
         same(threads, 1, 'threads of a page from a file');
     }
 }
@@ -93,22 +93,22 @@ async function controls() {
     await go(urlOf('share.html'));
     await run('await settled();');
     let { picture } = await run('return report();');
-    samePicture(picture, at('s.adcgs'), 'the first picture');
+    samePicture(picture, at('s.adcgs'), 'the first image');
     await shot('share');
-    // The time bar, to its end.
+    // The time bar, moved to its end.
     picture = await run(`const bar = document.getElementById('time');
         bar.value = bar.max;
         bar.dispatchEvent(new Event('input'));
         await until(() => adcgs.picture.time > 0, 'last frame');
         return adcgs.picture;`);
-    samePicture(picture, at('s.adcgs'), 'the picture at the end of the time bar');
-    // Keys that the player has.
+    samePicture(picture, at('s.adcgs'), 'the image at the end of the time bar');
+    // Keys of the player.
     const before = await run(`key('Home'); await until(() => adcgs.picture.time === 0, 'first frame');
         key('i'); key('l'); key('h'); await sleep(100);
         return ['statistics', 'help'].map(id => document.getElementById(id).hidden).concat(adcgs.view.call.view_loop());`);
     same(before, [false, false, 0], 'statistics, help and loop by their keys');
     await shot('help');
-    // Playing, and what it costs.
+    // Playback and pause.
     const played = await run(`key('h'); key('l'); key(' '); const n = adcgs.view.call.view_frame();
         await until(() => adcgs.view.call.view_frame() > n , 'playing');
         key(' ');
@@ -125,7 +125,7 @@ async function controls() {
     await shot('facts');
 }
 
-/** Orbit, then compare the GPU's picture with the exact one. */
+/** Orbits, then compares the GPU's image with the exact one. */
 async function gpu() {
     await go(urlOf('share.html'));
     const result = await run(`await settled();
@@ -136,17 +136,17 @@ async function gpu() {
             pointer('pointermove', 300 + 4 * i, 200 + i);
             await sleep(30);
         }
-        // Held still it is drawn again and again, in the end sorted for this view.
+        // While the pointer is held, the GPU renders repeatedly, finally with splats sorted for this view.
         let shown = 0, fast = null;
         await until(() => {
             pointer('pointermove', 328, 207);
             shown += adcgs.gpu.sorted === adcgs.gpu.n && !document.getElementById('fast').hidden ? 1 : 0;
             fast = shown > 5 && !document.getElementById('fast').hidden ? adcgs.gpu.pixels() : null;
             return fast;
-        }, 'picture of the GPU');
+        }, 'image of the GPU');
         const n = adcgs.pictures, exact = document.getElementById('exact'), line = document.getElementById('line').textContent;
         pointer('pointerup', 328, 207);
-        await until(() => adcgs.pictures > n && exact.style.opacity === '1', 'exact picture');
+        await until(() => adcgs.pictures > n && exact.style.opacity === '1', 'exact image');
         const slow = exact.getContext('2d').getImageData(0, 0, exact.width, exact.height).data;
         let sum = 0;
         for (let i = 0; i < slow.length; i++)
@@ -154,11 +154,11 @@ async function gpu() {
         const psnr = 10 * Math.log10(255 * 255 / (sum / (0.75 * slow.length)));
         return { same: slow.length === fast.length, psnr, line, ...adcgs.fast };`);
     if (result.none) {
-        console.log(`skipped: the GPU's picture in ${kind}: ${result.none}`);
+        console.log(`skipped: the GPU's image in ${kind}: ${result.none}`);
         return;
     }
-    check(result.same && result.psnr >= 40, `the GPU's picture has ${result.psnr} dB against the exact one`);
-    check(/not exact\s*$/.test(result.line), `below the GPU's picture stands "${result.line}"`);
+    check(result.same && result.psnr >= 40, `the GPU's image has ${result.psnr} dB against the exact one`);
+    check(/not exact\s*$/.test(result.line), `line below the GPU's image: "${result.line}"`);
     console.log(`${kind}: GPU ${result.psnr.toFixed(1)} dB, ${result.n} splats`);
     await shot('orbit');
 }
@@ -172,7 +172,7 @@ async function dropped() {
     for (const [name, state, message, ...options] of drops) {
         const bytes = name === 'none.adcgs' ? Buffer.alloc(3000) : readFileSync(at(name));
         const got = await run(`drop('${bytes.toString('base64')}', '${name}'); await sleep(50); await settled(); await sleep(300);
-            await until(() => adcgs.state === 'failed' || adcgs.picture, 'picture'); return report();`);
+            await until(() => adcgs.state === 'failed' || adcgs.picture, 'image'); return report();`);
         same(got.state, state, `${name} dropped`);
         check(message.test(got.message), `${name} dropped: "${got.message}"`);
         if (state === 'complete')
@@ -180,7 +180,7 @@ async function dropped() {
     }
 }
 
-/** A server that gives the stream in small pieces. It may isolate pages, and change what is in them. */
+/** A server that sends the stream in small pieces. It may isolate pages, and change their content. */
 function serve(headers = {}, edit = text => text) {
     const server = createServer((request, response) => {
         const name = new URL(request.url, 'http://host').pathname.slice(1);
@@ -218,7 +218,7 @@ async function withServer(use, ...options) {
 
 const ISOLATED = { 'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp' };
 
-/** Pictures at both ends of the time bar, once as many threads are there: the program's. */
+/** Images at both ends of the time bar equal the program's, once the given number of threads runs. */
 async function drawnBy(url, threads, text) {
     await go(url);
     const got = await run(`await settled();
@@ -227,7 +227,7 @@ async function drawnBy(url, threads, text) {
             const before = adcgs.picture.time;
             bar.value = Number(bar.value) ? 0 : bar.max;
             bar.dispatchEvent(new Event('input'));
-            await until(() => adcgs.drawn.exact && adcgs.picture.time !== before, 'picture of another moment');
+            await until(() => adcgs.drawn.exact && adcgs.picture.time !== before, 'image of another time');
             pictures.push(adcgs.picture);
         }
         key('i');
@@ -237,11 +237,11 @@ async function drawnBy(url, threads, text) {
     same(got.threads, threads, `threads, ${text}`);
     check(got.statistics.includes(`, ${threads} thread${threads > 1 ? 's' : ''}\n`), `statistics, ${text}: ${got.statistics}`);
     for (const picture of got.pictures)
-        samePicture(picture, at('s.adcgs'), `a picture by ${threads} threads, ${text}`);
+        samePicture(picture, at('s.adcgs'), `an image by ${threads} threads, ${text}`);
     return got;
 }
 
-/** Threads: where the server's headers allow it, as many as there are processors, or as the address says; else one. */
+/** Threads: if the server's headers allow them, one for each processor, or the number in the address; otherwise one. */
 async function threads() {
     const page = 'share.html?draw=exact';
     await withServer(async host => {
@@ -251,7 +251,7 @@ async function threads() {
             return;
         const processors = await run('return navigator.hardwareConcurrency;');
         await drawnBy(`${host}/${page}`, Math.min(8, processors), 'one for each processor');
-        await drawnBy(`${host}/${page}&threads=1`, 1, 'isolated, but one is wanted');
+        await drawnBy(`${host}/${page}&threads=1`, 1, 'isolated, but one requested');
         await drawnBy(`${host}/${page}&threads=2&module=exact`, 2, 'by the exact module');
     }, ISOLATED);
     if (!full)
@@ -269,18 +269,18 @@ async function threads() {
 async function served() {
     await withServer(async host => {
         await go(`${host}/player.html?src=s.adcgs`);
-        const early = await run(`await until(() => adcgs.pictures > 0, 'picture'); return report();`);
-        same(early.state, 'loading', 'a picture while the stream comes');
+        const early = await run(`await until(() => adcgs.pictures > 0, 'image'); return report();`);
+        same(early.state, 'loading', 'an image while the stream arrives');
         const late = await run('await settled(); await sleep(300); return { pictures: adcgs.pictures, ...report() };');
-        check(late.pictures > 1, `${late.pictures} pictures while the stream came`);
-        samePicture(late.picture, at('s.adcgs'), 'the picture of a stream that has come');
+        check(late.pictures > 1, `${late.pictures} images while the stream arrived`);
+        samePicture(late.picture, at('s.adcgs'), 'the image of a received stream');
         await go(`${host}/player.html?src=other.adcgs`);
         const missing = await run(`await until(() => adcgs.state === 'failed', 'failure'); return report();`);
-        check(/404/.test(missing.message), `a stream that is not there: "${missing.message}"`);
+        check(/404/.test(missing.message), `a missing stream: "${missing.message}"`);
     });
 }
 
-/** A server that sends a stream, then zeros without end; how many bytes it could send before the page hung up. */
+/** A server that sends a stream, then endless zeros. Checks the number of bytes sent before the page closed the connection. */
 async function endless(start, mibMost, see) {
     let sent = 0, gone = null;
     const hungUp = new Promise(done => { gone = done; });
@@ -306,27 +306,27 @@ async function endless(start, mibMost, see) {
     await hungUp;
     server.close();
     server.closeAllConnections();
-    // Firefox reads ahead of the page as fast as a loopback gives; it has to hang up before the server ends.
+    // Firefox reads ahead of the page at loopback speed; it has to close the connection before the server ends.
     const most = kind === 'firefox' ? 1000 : mibMost;
-    check(sent < most * 1048576, `a body without end: ${sent} bytes were sent`);
+    check(sent < most * 1048576, `an endless body: ${sent} bytes were sent`);
 }
 
-/** No more is read than the stream has, of a damaged one than its level allows, and without a header than level 2 does. */
+/** The page reads at most the stream's length; of a damaged stream the limit of its level; without a header that of level 2. */
 async function bodiesWithoutEnd() {
     const stream = readFileSync(at('s.adcgs')), bad = readFileSync(at('bad.adcgs'));
     await endless(stream, 64, got => {
-        same(got.message, '', 'what is said of a body without end');
-        samePicture(got.picture, at('s.adcgs'), 'the picture of a body without end');
+        same(got.message, '', 'message about an endless body');
+        samePicture(got.picture, at('s.adcgs'), 'the image of an endless body');
     });
-    await endless(bad, 64, got => check(/damaged/.test(got.message), `a damaged body without end: "${got.message}"`));
+    await endless(bad, 64, got => check(/damaged/.test(got.message), `a damaged endless body: "${got.message}"`));
     if (!full)
         return;
     const headless = Buffer.from(stream);
     headless[30] ^= 1;
-    await endless(headless, 400, got => check(got.state === 'failed', `a body without end or header: ${got.state}`));
+    await endless(headless, 400, got => check(got.state === 'failed', `an endless body without a header: ${got.state}`));
 }
 
-/** Without WebGL2: moving pictures come from the decoder, and it is said. */
+/** Without WebGL2 the decoder renders the images during motion, and a note says so. */
 async function withoutGpu() {
     await go(urlOf('share.html', '?draw=exact'));
     const got = await run(`await settled(); const n = adcgs.pictures;
@@ -336,12 +336,12 @@ async function withoutGpu() {
             await sleep(40);
         }
         pointer('pointerup', 360, 200);
-        await until(() => adcgs.pictures > n + 1 && adcgs.drawn.exact, 'pictures');
+        await until(() => adcgs.pictures > n + 1 && adcgs.drawn.exact, 'images');
         return report();`);
     check(got.notes.some(note => /rendered exactly/.test(note)), 'it does not say that WebGL2 is missing');
 }
 
-/** At a phone's width, with fingers. */
+/** At the width of a phone, with touch. */
 async function phone() {
     await browser.close();
     browser = await open(360, 640);
@@ -355,13 +355,13 @@ async function phone() {
             await sleep(20);
         }
         fingers('pointerup', 80);
-        await until(() => adcgs.picture.digest !== place && adcgs.drawn.exact, 'picture nearer by');
+        await until(() => adcgs.picture.digest !== place && adcgs.drawn.exact, 'nearer image');
         return { wide, width: innerWidth };`);
     same(got.wide, false, `the page at ${got.width} pixels`);
     await shot('phone');
 }
 
-/** Where relaxed SIMD does not fuse, the library finds out and the other module draws. */
+/** If relaxed SIMD does not fuse, the library detects it, and the other module is used. */
 async function notFused() {
     if (kind !== 'chromium')
         return;

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# Fused multiply-adds as WebAssembly has them are those of this machine: near ties, at the least numbers, with infinity and NaN.
+# Fused multiply-adds in WebAssembly equal those of this machine: near ties, for the smallest numbers, with infinity and NaN.
 . "${srcdir:-.}/tests/cli/common.sh"
 need tests/web/fma
 node=$(command -v node || command -v nodejs) || { echo "skipped: no node"; exit 77; }
@@ -11,7 +11,7 @@ kind=exact
 got=$(run) && [ "$got" = "$expected" ] || bad "exact: $got, expected $expected"
 kind=relaxed
 if got=$(run --experimental-wasm-relaxed-simd) || got=$(run); then
-    # Where the processor has no such instruction, engines round twice: the library refuses that.
+    # If the processor has no such instruction, engines round twice. The library rejects that.
     [ "$got" = "$expected" ] || ! grep -qw fma /proc/cpuinfo || bad "relaxed: $got, expected $expected"
 else
     echo "skipped: the relaxed module: node $("$node" --version) does not know it"

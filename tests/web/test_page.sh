@@ -1,13 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The page in the browsers that are here: frames to the bit, controls, files dropped, cut off and damaged. With ADCGS_FULL=1 also
-# pictures of the GPU, a server, a phone's width, and each browser; else the first one. ADCGS_CHROMIUM and ADCGS_FIREFOX may name
-# them, ADCGS_SHOTS a folder for pictures to look at. Runs in the build folder.
+# The page in the available browsers: exact frames, controls, files dropped, truncated and damaged. By default in the first
+# browser; with ADCGS_FULL=1 in each, and also images of the GPU, a server, and the width of a phone. ADCGS_CHROMIUM and
+# ADCGS_FIREFOX may name the browsers, ADCGS_SHOTS a folder for screenshots. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-share adcgs-dec adcgs-enc adcgs-demo-scene
 page=$PWD/web/adcgs-page.html
 [ -f "$page" ] || { echo "skipped: no page for browsers in this build"; exit 77; }
-node=$(command -v node || command -v nodejs) || { echo "skipped: no node, which drives browsers"; exit 77; }
+node=$(command -v node || command -v nodejs) || { echo "skipped: no node, which controls browsers"; exit 77; }
 chromium=${ADCGS_CHROMIUM-$(command -v chromium)} firefox=${ADCGS_FIREFOX-$(command -v firefox-esr || command -v firefox)}
 [ -n "$chromium$firefox" ] || { echo "skipped: neither chromium nor firefox-esr"; exit 77; }
 
@@ -20,7 +20,7 @@ cp "${srcdir:-.}/conformance/vectors/good-unit-truncated-layer-0.adcgs" "$dir/st
 cp "$dir/s.adcgs" "$dir/bad.adcgs"
 printf '\377\377\377\377' | dd of="$dir/bad.adcgs" bs=1 seek=$((bytes * 9 / 10)) conv=notrunc 2>/dev/null
 
-# The browser's home is the test's, which goes at the end.
+# The browser's home is the test's folder, which is removed at the end.
 export HOME=$dir XDG_CONFIG_HOME=$dir/config XDG_CACHE_HOME=$dir/cache
 for kind in chromium firefox; do
     command=${!kind}

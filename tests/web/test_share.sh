@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-share: the scene in the page is the file, texts are no markup, nothing is fetched from elsewhere, and what cannot be
-# shared costs one line. Runs in the build folder.
+# adcgs-share: the page contains the file's scene, texts are not interpreted as markup, nothing is loaded from elsewhere, and an
+# error is one line. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-share
 page=$PWD/web/adcgs-page.html
@@ -10,10 +10,10 @@ vectors=${srcdir:-.}/conformance/vectors
 stream=$vectors/good-tiers-slices.adcgs
 share() { ./adcgs-share --page "$page" "$@"; }
 
-# scene PAGE: what is in it.
+# scene PAGE: the scene in it.
 scene() { sed -n '/<script type="text\/plain" id="scene"/,/<\/script>/p' "$1" | sed '1d;$d' | base64 -d; }
 
-# The page is the other one with the scene in its place and a title.
+# The page is the page without a scene, with the scene in its place and a title.
 expect 0 "p.html: [0-9]* bytes, with a scene of $(wc -c <"$stream") bytes" share "$stream" -o "$dir/p.html"
 scene "$dir/p.html" | cmp - "$stream" || bad "the scene is another one"
 grep -q '<title>good-tiers-slices.adcgs</title>' "$dir/p.html" || bad "the title"
@@ -21,8 +21,8 @@ grep -q 'data-name="good-tiers-slices.adcgs"' "$dir/p.html" || bad "the name"
 sed -e 's#<title>good-tiers-slices.adcgs<#<title>adcgs<#' \
     -e '/<script type="text\/plain" id="scene"/,/<\/script>/c\<!-- scene -->' "$dir/p.html" |
     cmp - "$page" || bad "more than the scene and the title differs"
-! grep -n -E '(src|href) *= *"|@import|https?://' "$page" || bad "it names something outside"
-# Of every length to be padded.
+! grep -n -E '(src|href) *= *"|@import|https?://' "$page" || bad "the page refers to something outside"
+# Lengths with each kind of padding.
 for cut in 0 1 2; do
     head -c $(($(wc -c <"$stream") - cut)) "$stream" >"$dir/cut$cut.adcgs"
     expect 0 "" share "$dir/cut$cut.adcgs" -o "$dir/cut.html"
@@ -41,7 +41,7 @@ grep -q '<title>&lt;/title&gt;&lt;script&gt;alert(1)&lt;/script&gt;</title>' "$d
 expect 0 "without a scene" share -o "$dir/player.html"
 cmp "$dir/player.html" "$page" || bad "the page without a scene is another one"
 
-# What cannot be done, and leaves what was there.
+# Errors leave existing files unchanged.
 echo kept >"$dir/kept.html"
 expect 2 "no output" share "$stream"
 cp "$stream" "$dir/s.adcgs"
@@ -58,5 +58,5 @@ cp "$stream" "$dir/bad.adcgs"
 printf '\377\377\377' | dd of="$dir/bad.adcgs" bs=1 seek=200 conv=notrunc 2>/dev/null
 expect 4 "bad.adcgs" share "$dir/bad.adcgs" -o "$dir/kept.html"
 expect 3 "" share "$stream" -o "$dir/no/such.html"
-[ "$(cat "$dir/kept.html")" = kept ] || bad "a page was overwritten though nothing could be written"
+[ "$(cat "$dir/kept.html")" = kept ] || bad "an error overwrote a page"
 exit $failed
