@@ -62,7 +62,7 @@ static void print_anchors(const char *list)
         printf(", with %.0f known points", points);
     printf("; %.0f at most", most);
     if (refused > 0)
-        printf(", and the limit stopped growth next to %.0f primitives", refused);
+        printf(", %.0f further candidates exceeded the limit", refused);
     printf("; %.0f nearly invisible ones were removed\n", find_number(list, "idle"));
 }
 
@@ -71,9 +71,9 @@ static void print_motion(const char *list)
     const double still = find_number(list, "still"), moving = find_number(list, "moving");
     const double unchanging = find_number(list, "unchanging"), unmoved = find_number(list, "unmoved");
     if (still > 0 && moving > 0)
-        printf("motion    image loss %.4g with motion, %.4g without\n", moving, still);
+        printf("motion      image loss %.4g with motion, %.4g without\n", moving, still);
     if (unchanging > 0 || unmoved > 0)
-        printf("static    %.0f anchors since the images do not change there, %.0f since their motion is invisible\n",
+        printf("static      %.0f anchors since the images do not change there, %.0f since their motion is invisible\n",
                unchanging, unmoved);
 }
 
@@ -85,7 +85,7 @@ static void print_reasons(const char *list)
         printf("primitives  %.0f that covered almost nothing were removed, and %.0f faint ones\n", unseen, faint);
     const double units = find_number(list, "units");
     if (units > 0)
-        printf("networks  %.0f hidden units that did not justify their bits were removed\n", units);
+        printf("networks    %.0f hidden units that did not justify their bits were removed\n", units);
     print_motion(list);
 }
 

@@ -82,7 +82,7 @@ most=$(sed -n '$s/.*"stage":"decisions",.*"most":\([0-9]*\),.*/\1/p' "$dir/one.l
 [ "${most:-0}" -gt 0 ] || { bad "no decisions at the end of the log"; tail -n 1 "$dir/one.log"; }
 ./adcgs-info "$dir/one.adcgs" | grep -q "decisions = .*most=$most " || bad "the file has other decisions than the log"
 ./adcgs-info --why "$dir/one.adcgs" >"$dir/why" || bad "--why fails"
-grep -q "^anchors  *300 allowed; [0-9]* to begin with.*; $most at most" "$dir/why" || { bad "--why does not tell the anchors"; cat "$dir/why"; }
+grep -q "^anchors  *300 allowed; [0-9]* at the start.*; $most at most" "$dir/why" || { bad "--why does not tell the anchors"; cat "$dir/why"; }
 grep -q "\"bytes\": $(wc -c <"$dir/one.adcgs")," "$dir/one.out" || bad "--json has another size"
 grep -q '"lambda": 0.0[0-9]' "$dir/one.out" || bad "--json does not give lambda"
 [ ! -s "$dir/one.err" ] || { bad "messages with --quiet"; cat "$dir/one.err"; }
