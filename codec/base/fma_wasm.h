@@ -63,7 +63,7 @@ FMA_INLINE float adcgs_fma1(float a, float b, float c)
     return (float)sum;
 }
 
-/* Sums of two lanes, rounded to odd. */
+/* adcgs_sum_to_odd() for two lanes. */
 static __attribute__((noinline, unused)) v128_t adcgs_sums_to_odd(v128_t p, v128_t c, v128_t sum)
 {
     return wasm_f64x2_make(

@@ -121,7 +121,7 @@ int adcgs_model_equal(const adcgs_model *a, const adcgs_model *b, adcgs_error *e
 void adcgs_model_digest(const adcgs_model *model, uint8_t digest[16]);
 
 /** Channels that spans add to Sigma_v: translation xyz from the middle of the lifetime to its end, the middle, and the logarithm
- * of the inverse duration. */
+ * of the pace, which is the inverse of half the lifetime. */
 enum adcgs_span_channel { ADCGS_SPAN_VELOCITY = ADCGS_SIGMA_N, ADCGS_SPAN_MIDDLE = ADCGS_SIGMA_N + 3, ADCGS_SPAN_PACE };
 /** Channels of Sigma_v. */
 static inline int adcgs_sigma_rows(const adcgs_params *params)

@@ -11,7 +11,7 @@
 
 /** log2(1/255): a splat adds nothing to a pixel if log2 of its alpha there is below this. */
 #define ADCGS_POWER_MIN -0x1.ffa37cp+2f
-/** 1/255: a splat whose opacity never exceeds this is not rendered. */
+/** 1/255: a splat with an opacity below this is not rendered. */
 #define ADCGS_OPACITY_MIN 0x1.010102p-8f
 /** Keeps the screen covariance invertible for the thinnest splats: its condition number stays below 2^18. */
 #define ADCGS_SHEAR 0x1.ffff8p-1f

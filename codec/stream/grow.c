@@ -56,7 +56,7 @@ static void go_on(adcgs_grow *g, adcgs_buffer *out, adcgs_error *error)
     g->writer.error = error;
 }
 
-/** State that a call changes before it can fail. */
+/** State that a call may have changed before it fails. */
 typedef struct state {
     adcgs_writer writer;
     adcgs_bytes bytes;
