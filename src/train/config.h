@@ -65,7 +65,8 @@ typedef struct adcgs_train_config {
     float keep_opacity;    /**< minimum mean opacity of primitives at decide_at */
     float still_below;     /**< effect of time below which an anchor is static; 1 is just visible */
     /* Times, as fractions of the run. */
-    float curriculum_begin, curriculum_until; /**< the views in training grow from the middle of time to all between these */
+    /** Share of the views, about the middle of time, that training begins with (no time); from until on it uses all views. */
+    float curriculum_begin, curriculum_until;
     float rates_fall_from; /**< start of the decay of learning rates */
     float quarter_until, half_until; /**< end of training at a quarter and at half of the resolution */
     float scale_from;      /**< start of the scale penalty; 0 if several views share a timestamp */

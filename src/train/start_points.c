@@ -152,8 +152,8 @@ static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
     }
 }
 
-#define NEAR_RADIUS 1.2 /* scene units: random points in the volume that the cameras surround */
-#define FAR_RADIUS 4.0  /* scene units: random points behind it */
+#define NEAR_RADIUS 1.2 /* scene units: radius of the volume that the cameras surround */
+#define FAR_RADIUS 4.0  /* scene units: outer radius of the random points beyond it */
 #define FAR_SHARE 0.2   /* of the random points lie beyond the near radius */
 #define CORE_SHARE 0.5 /* of the points lie in the inner half of the near radius, where all cameras look */
 
