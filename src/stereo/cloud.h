@@ -39,7 +39,7 @@ double adcgs_cloud_nearest(const adcgs_cloud *cloud, const double x[3], const fl
 /** Finds points within reach of a position, at most `most` of them. \return their number. */
 uint32_t adcgs_cloud_within(const adcgs_cloud *cloud, const double x[3], double reach, uint32_t *found, uint32_t most);
 
-/** Unit normals, oriented towards the cameras; 0 where too few points are within reach. */
+/** Unit normals, oriented towards the cameras on average; 0 where too few points are within reach. */
 void adcgs_cloud_normals(const adcgs_cloud *cloud, double reach, const adcgs_stereo_rig *rig, float (*normal)[3]);
 
 /** Labels connected components with links of length reach, among points whose mark is 0. part: [n] label from 1; 0: none. */

@@ -18,7 +18,7 @@ enum { ANYWHERE = 640 };     /* approximate number of points for the search over
 enum { SIGHTS_FEW = 6 };     /* minimum number of correspondences to check a given pose */
 enum { SIGHTS_LEAST = 16 };  /* minimum number of correspondences to report another pose */
 enum { WELL_LEAST = 4 };     /* minimum number of cameras whose pose is confirmed */
-#define WELL_SHARE 0.6       /* minimum share of them; otherwise no single camera is at fault */
+#define WELL_SHARE 0.6       /* minimum share of them among all cameras; else no single camera is at fault */
 #define AXES_ALIKE 0.6       /* cosine: minimum alignment of the axes of compared cameras */
 #define APART 0.005          /* scene units: minimum distance between them */
 #define FITS 1.0             /* pixels: maximum reprojection error of an inlier */
