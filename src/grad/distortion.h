@@ -10,7 +10,7 @@
 
 #include "grad/raster.h"
 
-/** Deviation of depth, relative to the mean visible depth, up to which the energy is quadratic. */
+/** Deviation of depth, relative to the harmonic mean of the visible depths, up to which the energy is quadratic. */
 #define ADCGS_DISTORTION_SOFT 0.02f
 
 /** Zero-initialise before use. */
