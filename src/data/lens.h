@@ -32,10 +32,10 @@ void adcgs_lens_project(const adcgs_lens *lens, double x, double y, double uv[2]
 int adcgs_lens_unproject(const adcgs_lens *lens, double u, double v, double xy[2]);
 /**
  * Derives the pinhole camera for a lens: its focal lengths, no skew, and the largest rectangle of pixels that the image covers
- * wholly. The rectangle is found on a raster of 1/128 of the longer side, then grown until no side can move. Sets width,
- * height, fx, fy, cx and cy of camera. A fisheye lens sees more than a pinhole can show: the rectangle reaches at most 60
- * degrees from the axis to each side. A lens that displaces no point by a hundredth of a pixel becomes the pinhole itself, with
- * lens->width 0.
+ * wholly. The rectangle is found on a raster of at most 128 cells along the longer side, then grown until no side can move.
+ * Sets width, height, fx, fy, cx and cy of camera. A fisheye lens sees more than a pinhole can show: the rectangle reaches at
+ * most 60 degrees from the axis to each side. A lens that displaces no point by a hundredth of a pixel becomes the pinhole
+ * itself, with lens->width 0.
  * \return ADCGS_ERR_DATA, naming path, if less than a tenth of the image is left, or if the model folds inside the image. For a
  * fisheye lens only folds inside the part that the pinhole can show count.
  */
