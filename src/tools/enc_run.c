@@ -324,7 +324,7 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
         adcgs_progress_show(&w->progress, "start   %u view%s: matching ...", scene->n_views[ADCGS_SPLIT_TRAIN],
                             adcgs_s(scene->n_views[ADCGS_SPLIT_TRAIN]));
     const int is_one_of_many = job->ranks && job->ranks->rank; /* the first rank reports for all */
-    const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* no messages in a live run */
+    const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* live footage is not judged */
     adcgs_train_config config = job->config;
     config.judges_poses = tells && !w->doubted; /* by the first part of a scene */
     ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &config, before, job->cpu, job->pool, error));
