@@ -50,7 +50,7 @@ typedef struct adcgs_splat_dsp {
     void (*anchor)(adcgs_anchor_lanes *anchor, const float *sigma, int spans);
     /** F_theta's outputs [14][64] to canonical values. */
     void (*predict)(adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor, const float *out);
-    /** Canonical primitives, as for static anchors. */
+    /** Canonical primitives: without motion, as those of static anchors. */
     void (*place)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor,
                   const int32_t *present);
     /**
