@@ -17,8 +17,8 @@
 
 #define IO_BYTES 65536 /* of the buffer for FFmpeg */
 #define THREADS 4            /* fixed, since the encoders' output depends on it */
-#define KEY_SECONDS 2        /* between key frames */
-#define KEY_FRAMES_MAX 250 /* between key frames */
+#define KEY_SECONDS 2        /* between key frames, if this is at most KEY_FRAMES_MAX */
+#define KEY_FRAMES_MAX 250 /* frames from one key frame to the next */
 
 struct adcgs_video_encoder {
     adcgs_video_target target;
