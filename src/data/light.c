@@ -8,7 +8,7 @@
 
 enum { SIDE = 2 * ADCGS_GLANCE_SIDE }; /* pixels along the shorter side of images for thumbnails: each cell has several */
 
-/** The factor that leaves the fewest sufficient pixels. */
+/** The largest factor of reduction that leaves SIDE pixels along the shorter side of each image; at least 1. */
 static int divide_for(const adcgs_scene *scene)
 {
     int side = 0;
