@@ -49,7 +49,7 @@ static void print_text(const adcgs_enc_report *r, const result *x)
             x->quality.psnr, x->quality.ssim);
 }
 
-/** Rounds to six digits: 0.01 was a float before. */
+/** Rounds to six digits, so that the binary32 number nearest to 0.01 is printed as 0.01. */
 static double shown(double x)
 {
     char text[32];

@@ -49,7 +49,7 @@ static adcgs_status write_repaired(adcgs_stream *s, const char *path, adcgs_erro
     return status;
 }
 
-/** Finds the usable parts of a stream and writes them to a file. */
+/** Finds the usable parts of a stream, and writes them to a file unless repaired is NULL. */
 static adcgs_status check(adcgs_read_at_fn read, void *user, uint64_t size, const char *path, const char *repaired,
                           uint32_t *faults, adcgs_error *error)
 {
