@@ -17,7 +17,7 @@
 
 #define IO_BYTES 65536 /* of the buffer for FFmpeg */
 #define THREADS 4            /* fixed, since the encoders' output depends on it */
-#define KEY_SECONDS 2        /* between key frames, if this is at most KEY_FRAMES_MAX */
+#define KEY_SECONDS 2        /* between key frames, at most KEY_FRAMES_MAX frames */
 #define KEY_FRAMES_MAX 250 /* frames from one key frame to the next */
 
 struct adcgs_video_encoder {
