@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Speed: first the machine's ceilings; then kernels, stages, frames, iterations and playing, relative to them. See HACKING.md.
+ * Speed: first the machine's ceilings; then kernels, stages, frames, iterations and playing, relative to them. The guide is
+ * doc/hacking/measure.md.
  *
  *     tests/bench/adcgs-bench --output speed.csv
  */

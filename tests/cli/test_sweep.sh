@@ -84,7 +84,7 @@ spoilt 'line 2: expected bytes and psnr' 'bytes,psnr\n1,\n'
 spoilt 'line 3: expected as many' 'bytes,psnr\n1,3\n1\n'
 spoilt 'line 2: expected at most as many cells' 'bytes,psnr\n1,3,4\n'
 spoilt 'line 2: expected cells without' 'bytes,psnr\n"1",3\n'
-spoilt 'line 18: expected no more than 16' "bytes,psnr\n$(yes '1,3\n' | head -17 | tr -d '\n')"
+spoilt 'line 18: expected at most 16' "bytes,psnr\n$(yes '1,3\n' | head -17 | tr -d '\n')"
 for table in x x= "=$dir/other.csv" "x=$dir/other.csv,"; do
     sweep --lambda 1,2 --add "$table"
     [ $got -eq 2 ] || fail "--add $table: $got $(cat "$dir/err")"
