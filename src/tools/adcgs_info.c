@@ -117,7 +117,7 @@ static void print_header(const adcgs_info_report *r, const char *name)
            i->segments == 1 ? "" : "s", i->frame_rate);
     printf("scene       origin %g %g %g, scale %g, axes %s, unit %s\n", i->scene_origin[0], i->scene_origin[1],
            i->scene_origin[2], i->scene_scale, i->axes, i->units);
-    printf("image     colour %s, background %g %g %g, filter %g px^2\n", i->colour, (double)i->background[0],
+    printf("image       colour %s, background %g %g %g, filter %g px^2\n", i->colour, (double)i->background[0],
            (double)i->background[1], (double)i->background[2], (double)r->stream.screen_filter);
     if (r->stream.params.bodies)
         snprintf(bodies, sizeof bodies, r->stream.params.bodies == 1 ? ", %d body" : ", %d bodies", r->stream.params.bodies);
