@@ -23,11 +23,11 @@ for program in adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-conform adcgs-imp
         fault "$program: not built"
         continue
     fi
-    help=$("./$program" --help) || fault "$program --help leaves with $?"
-    "./$program" --version >/dev/null || fault "$program --version leaves with $?"
+    help=$("./$program" --help) || fault "$program --help exits with $?"
+    "./$program" --version >/dev/null || fault "$program --version exits with $?"
     "./$program" --no-such-option >/dev/null 2>&1
-    [ $? -eq 2 ] || fault "$program: an unknown option is no usage error"
-    # Options start a line of the help; in the page they follow .TP.
+    [ $? -eq 2 ] || fault "$program: an unknown option is not a usage error"
+    # Options are at the start of a line in the help, and after .TP in the page.
     in_help=$(grep -o -E '^ +(-[a-zA-Z], )?--[a-z0-9-]+( [A-Z][A-Za-z:,|]*)?' <<<"$help" | options)
     in_page=$(sed 's/\\f[IR]//g; s/[\\"]//g' "$man/$program.1" | grep -A1 '^\.TP' | options)
     [ -n "$in_help" ] || fault "$program: no options found in its help"
@@ -48,7 +48,7 @@ long=$(awk 'FNR == 1 { n = code = 0 }
     ++n == 9 { print FILENAME ":" FNR }' "$man"/*.[13])
 [ -z "$long" ] || fault "paragraphs of over eight lines:" $long
 
-# The settings of the pages are those of the program.
+# The settings in the pages are those of the program.
 for page in "$man/adcgs-enc.1" "$man/../doc/settings.md"; do
     if [ -x ./adcgs-enc ] && ! "$man/settings.sh" ./adcgs-enc "$page" | diff "$page" - >&2; then
         fault "$page: its settings (<) are not those of the program (>); make man-update writes them"
