@@ -10,7 +10,7 @@
 
 /*
  * Checked on 40 generated scenes and four others without errors, in which no camera is reported, and on scenes with one
- * wrong camera: table "One camera" in doc/results.md.
+ * wrong camera: table "One camera" in doc/log/stability.md.
  */
 enum { SOURCES = 6 };        /* maximum number of source cameras per camera, the nearest first */
 enum { REACH = 12 };         /* pixels: search radius around a point's expected position */
