@@ -403,7 +403,7 @@ named()
         line ">$name<" "$out/index.html"
     done
 }
-named portions 'first layers' 'first tiers' 'first bytes of the file' 'first tiers, what moves' '100 %'
+named portions 'first layers' 'first tiers' 'first bytes of the file' 'first tiers, moving regions' '100 %'
 named errors 'camera' 'it_s 1' 'PSNR, dB' 'PSNR of moving regions, dB'
 line '^0.5 1 0.25 0.75 0.5 1.5 34$' "$out/errors.gp"
 sweep --lambda 1,2,4 --yardsticks none --resume
