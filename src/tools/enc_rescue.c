@@ -49,7 +49,8 @@ void adcgs_enc_say_how_to_go_on(const adcgs_cli *cli, const adcgs_enc_watcher *w
                         adcgs_trainer_rescued(w->t), at, path, w->state, resume, base);
     else
         adcgs_cli_error(cli, ADCGS_OK, "%s at iteration %u%s; continue with the same command%s%s%s", what,
-                        adcgs_trainer_rescued(w->t), at, resume, base, adcgs_enc_is_ready(w) ? "; or make a file of this state with --finish" : "");
+                        adcgs_trainer_rescued(w->t), at, resume, base,
+                        adcgs_enc_is_ready(w) ? "; or make a file of this state with --finish" : "");
 }
 
 void adcgs_enc_rescue(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_status status)
