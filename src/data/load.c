@@ -11,8 +11,8 @@
 #include "data/scene.h"
 
 #include "data/clips.h"
-#include "data/mask.h"
 #include "data/splat_views.h"
+#include "data/view_mask.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,8 +21,8 @@
 
 static adcgs_status check_size(const adcgs_scene_view *view, const char *path, int width, int height, adcgs_error *error)
 {
-    const int bends = view->lens.width > 0;
-    const int wanted[2] = {bends ? view->lens.width : view->camera.width, bends ? view->lens.height : view->camera.height};
+    int wanted[2];
+    adcgs_view_size(view, wanted);
     if (width == wanted[0] && height == wanted[1])
         return ADCGS_OK;
     return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", path, width, height,
@@ -43,35 +43,12 @@ static adcgs_status read_image(const adcgs_scene_view *view, const char *path, a
     return adcgs_image_read(image, path, error);
 }
 
-static adcgs_status read_mask(const adcgs_scene_view *view, const char *path, adcgs_image *mask, adcgs_error *error)
-{
-    ADCGS_TRY(read_image(view, path, mask, error));
-    const adcgs_status status = adcgs_mask_settle(mask, path, error);
-    if (status != ADCGS_OK)
-        adcgs_image_free(mask);
-    return status;
-}
-
-/** Checks the size, and that colours and alpha of a mask agree. */
-static adcgs_status probe_mask(const adcgs_scene_view *view, const char *path, adcgs_error *error)
-{
-    int width, height, channels;
-    adcgs_image mask;
-    ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, path, error));
-    ADCGS_TRY(check_size(view, path, width, height, error));
-    if (channels % 2)
-        return ADCGS_OK;
-    ADCGS_TRY(read_mask(view, path, &mask, error));
-    adcgs_image_free(&mask);
-    return ADCGS_OK;
-}
-
 adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
 {
     ADCGS_TRY(probe(view, view->path, error));
     if (view->mask)
-        ADCGS_TRY(probe_mask(view, view->mask, error));
-    return view->moving ? probe_mask(view, view->moving, error) : ADCGS_OK;
+        ADCGS_TRY(adcgs_view_mask_probe(view, view->mask, error));
+    return view->moving ? adcgs_view_mask_probe(view, view->moving, error) : ADCGS_OK;
 }
 
 /* ---- Reading ---- */
@@ -313,7 +290,7 @@ static adcgs_status load_whole(const adcgs_scene *scene, const adcgs_scene_view 
 {
     adcgs_image image, mask = {.data = NULL};
     ADCGS_TRY(read_picture(scene, view, &image, error));
-    adcgs_status status = view->mask ? read_mask(view, view->mask, &mask, error) : ADCGS_OK;
+    adcgs_status status = view->mask ? adcgs_view_mask_read(view, view->mask, &mask, error) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = shape(scene, view, view->mask ? &mask : NULL, divide, &image, error);
     if (status == ADCGS_OK && !(*rgb = to_planes(&image)))
@@ -359,7 +336,7 @@ adcgs_status adcgs_scene_load_moving(const adcgs_scene_view *view, int divide, u
     adcgs_image image;
     const source straight = {&image, NULL, NULL};
     *moving = NULL;
-    ADCGS_TRY(read_mask(view, view->moving, &image, error));
+    ADCGS_TRY(adcgs_view_mask_read(view, view->moving, &image, error));
     adcgs_status status = to_zero_and_one(&image, view->moving, error);
     if (status == ADCGS_OK && view->lens.width > 0)
         status = straighten(view, &image, 1, error);

@@ -8,7 +8,12 @@
 
 #include "data/mask.h"
 
-#define SAME_SHARE 0.01 /* share of the pixels on which both may differ, for soft edges */
+#include "io/kind.h"
+
+#include <math.h>
+
+#define SAME_SHARE 0.01    /* share of the pixels on which both may differ, for soft edges */
+#define NEARLY_BLACK 0.1f  /* largest value of black after JPEG's errors, for pixels from 0 to 1 */
 
 static int is_black(const float *pixel, int channels)
 {
@@ -42,10 +47,28 @@ static counts count(const adcgs_image *mask)
     return n;
 }
 
+/** Sets nearly black pixels of a JPEG file to 0. JPEG keeps black only approximately, so a test for 0 would hide no pixel. */
+static void blacken(adcgs_image *mask, const char *path)
+{
+    const char *const reader = adcgs_kind_at(path)->reader;
+    const size_t n = (size_t)mask->width * (size_t)mask->height, channels = (size_t)mask->channels;
+    if (!reader || strcmp(reader, "jpeg") != 0)
+        return;
+    for (size_t i = 0; i < n; i++) {
+        float most = 0.0f;
+        for (size_t c = 0; c < channels; c++)
+            most = fmaxf(most, mask->data[i * channels + c]);
+        for (size_t c = 0; c < channels && most < NEARLY_BLACK; c++)
+            mask->data[i * channels + c] = 0.0f;
+    }
+}
+
 adcgs_status adcgs_mask_settle(adcgs_image *mask, const char *path, adcgs_error *error)
 {
-    if (mask->channels % 2)
+    if (mask->channels % 2) {
+        blacken(mask, path);
         return ADCGS_OK;
+    }
     const counts n = count(mask);
     const int by_alpha = n.clear > 0 && n.clear < n.all, by_colour = !by_alpha || (n.black > 0 && n.black < n.all);
     adcgs_image out;
@@ -62,4 +85,40 @@ adcgs_status adcgs_mask_settle(adcgs_image *mask, const char *path, adcgs_error 
     adcgs_image_free(mask);
     *mask = out;
     return ADCGS_OK;
+}
+
+/* ---- Sizes ---- */
+
+int adcgs_mask_fits(int width, int height, int image_width, int image_height)
+{
+    const double x = (double)image_width / width, y = (double)image_height / height, slack = fmax(1.0, fmax(x, y));
+    return fabs(image_width - y * width) <= slack || fabs(image_height - x * height) <= slack;
+}
+
+adcgs_status adcgs_mask_resize(adcgs_image *mask, int width, int height, const char *path, adcgs_error *error)
+{
+    const size_t bytes = (size_t)mask->channels * sizeof *mask->data;
+    adcgs_image out;
+    if (mask->width == width && mask->height == height)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_image_alloc(&out, width, height, mask->channels, path, error));
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const size_t u = (size_t)((2 * (int64_t)x + 1) * mask->width / (2 * width));
+            const size_t v = (size_t)((2 * (int64_t)y + 1) * mask->height / (2 * height));
+            memcpy(out.data + ((size_t)y * (size_t)width + (size_t)x) * (size_t)mask->channels,
+                   mask->data + (v * (size_t)mask->width + u) * (size_t)mask->channels, bytes);
+        }
+    adcgs_image_free(mask);
+    *mask = out;
+    return ADCGS_OK;
+}
+
+int adcgs_mask_shows(const adcgs_image *mask)
+{
+    const size_t n = (size_t)mask->width * (size_t)mask->height * (size_t)mask->channels;
+    for (size_t i = 0; i < n; i++)
+        if (mask->data[i] > 0.0f)
+            return 1;
+    return 0;
 }

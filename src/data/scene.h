@@ -91,7 +91,10 @@ const char *adcgs_split_name(adcgs_split split);
 /** Returns 0, or -1 if the name is unknown. */
 int adcgs_split_parse(const char *name, adcgs_split *split);
 
-/** Checks that the files of an image and its masks have the size of its camera or lens; ADCGS_ERR_DATA if not. */
+/**
+ * Checks that an image file has the size of its camera or lens, and that its masks have the same aspect ratio; ADCGS_ERR_DATA if
+ * not. Masks of another size are scaled by the nearest pixel when they are loaded.
+ */
 adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error);
 
 /**

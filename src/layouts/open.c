@@ -9,6 +9,7 @@
 #include "data/extent.h"
 #include "data/paths.h"
 #include "data/pose.h"
+#include "data/view_mask.h"
 #include "io/extension.h"
 #include "io/file.h"
 #include "io/kind.h"
@@ -70,7 +71,7 @@ adcgs_status adcgs_scene_check_files(const adcgs_scene *scene, adcgs_error *erro
             if (s != ADCGS_SPLIT_TRAIN)
                 ADCGS_TRY(adcgs_scene_probe(view, error));
         }
-    return ADCGS_OK;
+    return scene->splats ? ADCGS_OK : adcgs_scene_check_masks(scene, error);
 }
 
 /** Near planes are relative to the scene, whose units are unknown. Cameras in one place use the scene's extent as distance. */

@@ -13,18 +13,23 @@ typedef struct paint {
     float hidden, seen, between;
 } paint;
 
-static void put_mask(const char *name, int channels, paint colour, paint alpha, int columns)
+static void put_sized(const char *name, int width, int height, int channels, paint colour, paint alpha, int columns)
 {
     adcgs_image mask;
-    expect_good(adcgs_image_alloc(&mask, W, H, channels, name, &error));
-    for (int i = 0; i < W * H; i++)
+    expect_good(adcgs_image_alloc(&mask, width, height, channels, name, &error));
+    for (int i = 0; i < width * height; i++)
         for (int c = 0; c < channels; c++) {
             const paint *p = channels % 2 == 0 && c == channels - 1 ? &alpha : &colour;
-            const int x = i % W;
-            mask.data[i * channels + c] = x < W / 2 ? p->hidden : x < W / 2 + columns ? p->between : p->seen;
+            const int x = i % width;
+            mask.data[i * channels + c] = x < width / 2 ? p->hidden : x < width / 2 + columns ? p->between : p->seen;
         }
     expect_good(adcgs_image_write(&mask, in(name), 0, &error));
     adcgs_image_free(&mask);
+}
+
+static void put_mask(const char *name, int channels, paint colour, paint alpha, int columns)
+{
+    put_sized(name, W, H, channels, colour, alpha, columns);
 }
 
 static void put_scene(const char *mask)
@@ -117,9 +122,51 @@ static void test_both(void **state)
     adcgs_image_free(&mask);
 }
 
+static const paint black_and_white = {0, 1, 1}, none = {0, 0, 0};
+
+/** A mask of another size is scaled if it has its image's aspect ratio, else refused. */
+static void test_sizes(void **state)
+{
+    static const struct {
+        int width, height, fits;
+    } cases[] = {{W / 2, H / 2, 1}, {2 * W, 2 * H, 1}, {2 * W, 2 * H - 1, 1}, {W, H / 2, 0}, {H, W, 0}, {W - 4, H, 0}};
+    put_scene("m.png");
+    for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
+        put_sized("m.png", cases[i].width, cases[i].height, 1, black_and_white, none, 0);
+        if (cases[i].fits)
+            assert_int_equal(hidden_columns(), W / 2);
+        else
+            expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "m.png: ", "expected 40x20 like");
+    }
+}
+
+/** Pixels that JPEG has made nearly black are hidden; in lossless files only 0 hides. */
+static void test_jpeg(void **state)
+{
+    static const paint nearly = {0.02f, 0.97f, 1};
+    put_scene("m.jpg");
+    put_mask("m.jpg", 3, nearly, none, 0);
+    assert_int_equal(hidden_columns(), W / 2);
+    put_scene("m.png");
+    put_mask("m.png", 3, nearly, none, 0);
+    assert_int_equal(hidden_columns(), 0);
+}
+
+/** Masks that hide all pixels are refused before training. */
+static void test_nothing_left(void **state)
+{
+    static const paint black = {0, 0, 0};
+    put_scene("m.png");
+    put_mask("m.png", 1, black, none, 0);
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "m.png: black everywhere", "no pixel is left");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(test_sizes, clean),
+        cmocka_unit_test_teardown(test_jpeg, clean),
+        cmocka_unit_test_teardown(test_nothing_left, clean),
         cmocka_unit_test_teardown(test_kinds, clean),
         cmocka_unit_test_teardown(test_both, clean),
     };
