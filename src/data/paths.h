@@ -15,5 +15,10 @@ int adcgs_is_there_at(const char *format, ...) ADCGS_PRINTF(1, 2);
 int adcgs_is_folder(const char *path);
 /** *out: the stem itself or with an image extension, the first that exists and is no folder; else NULL. ADCGS_ERR_MEMORY. */
 adcgs_status adcgs_find_image(char **out, const char *stem, adcgs_error *error);
+/**
+ * Finds an image below a folder, which ends with its slash or is empty, by a name that may differ in letter case or in the
+ * extension of images. *out: from malloc(); NULL if no file matches, or several do. ADCGS_ERR_MEMORY.
+ */
+adcgs_status adcgs_find_image_like(char **out, const char *folder, const char *name, adcgs_error *error);
 
 #endif

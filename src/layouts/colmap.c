@@ -43,9 +43,10 @@ static adcgs_status read_file(reader *r, adcgs_colmap_file file)
 }
 
 /** Like adcgs_fail(), with the file's name in front of the message. */
-static adcgs_status bad_file(const reader *r, const char *file, const char *what)
+static adcgs_status bad_file(const reader *r, adcgs_colmap_file file, const char *what)
 {
-    return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s%s.%s: %s", r->place.folder, file, adcgs_colmap_end(&r->place), what);
+    return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s%s.%s: %s", r->place.folder,
+                      file == ADCGS_COLMAP_CAMERAS ? "cameras" : "images", adcgs_colmap_end(&r->place, file), what);
 }
 
 static adcgs_status read_points(reader *r, size_t n, size_t period)
@@ -59,7 +60,9 @@ static adcgs_status read_points(reader *r, size_t n, size_t period)
 
 /* ---- Images ---- */
 
-/** Finds an image in a folder: by its name, or with another extension. *out is NULL if there is none. */
+/**
+ * Finds an image in a folder: by its name, with another extension, or in another letter case. *out is NULL if there is none.
+ */
 static adcgs_status find_in(const reader *r, const char *folder, const char *name, char **out)
 {
     char *path = adcgs_path("%s%s", folder, name);
@@ -73,8 +76,11 @@ static adcgs_status find_in(const reader *r, const char *folder, const char *nam
         if (dot && (!slash || dot > slash + 1)) {
             *dot = 0;
             status = adcgs_find_image(out, path, r->error);
+            *dot = '.';
         }
     }
+    if (status == ADCGS_OK && !*out)
+        status = adcgs_find_image_like(out, folder, path + strlen(folder), r->error);
     free(path);
     return status;
 }
@@ -92,7 +98,8 @@ static adcgs_status try_folder(reader *r, char *folder, const char *name)
     return status;
 }
 
-static adcgs_status find_pictures(reader *r, const char *name)
+/** Searches for the folder of an image. */
+static adcgs_status look_for(reader *r, const char *name)
 {
     static const char *const whole[] = {"images/", "", "input/", "rgb/1x/"};
     const char *directory = r->scene->directory;
@@ -103,10 +110,20 @@ static adcgs_status find_pictures(reader *r, const char *name)
         if (!r->pictures)
             ADCGS_TRY(try_folder(r, adcgs_path("%s/rgb/%dx/", directory, n), name));
     }
+    return ADCGS_OK;
+}
+
+/** Finds the folder of the first image. If that is missing, of the last; then the later error names the first with its folder. */
+static adcgs_status find_pictures(reader *r)
+{
+    const char *first = r->model.images[0].name, *last = r->model.images[r->model.n_images - 1].name;
+    ADCGS_TRY(look_for(r, first));
+    if (!r->pictures)
+        ADCGS_TRY(look_for(r, last));
     return r->pictures ? ADCGS_OK
                        : adcgs_fail(r->error, ADCGS_ERR_DATA,
                                     "%s: no image %.100s in images, here, input, images_N or rgb/Nx, and no video of it",
-                                    directory, name);
+                                    r->scene->directory, first);
 }
 
 /** Sets the name: the file's, without its extension and with its folders. */
@@ -125,7 +142,7 @@ static const adcgs_colmap_camera *find_camera(const reader *r, const adcgs_colma
     const adcgs_colmap_camera *camera = adcgs_colmap_find_camera(&r->model, image->camera_id);
     if (!camera)
         adcgs_fail(r->error, ADCGS_ERR_DATA, "%simages.%s: %.100s: there is no camera %u", r->place.folder,
-                   adcgs_colmap_end(&r->place), image->name, image->camera_id);
+                   adcgs_colmap_end(&r->place, ADCGS_COLMAP_IMAGES), image->name, image->camera_id);
     return camera;
 }
 
@@ -175,7 +192,7 @@ static adcgs_status add_picture(reader *r, const adcgs_colmap_image *image, adcg
 
 static adcgs_status add_pictures(reader *r)
 {
-    ADCGS_TRY(find_pictures(r, r->model.images[0].name));
+    ADCGS_TRY(find_pictures(r));
     for (int split = 0; split < ADCGS_SPLITS; split++) /* training comes first, so that its images determine the size */
         for (size_t i = 0; i < r->model.n_images; i++)
             if (split == (i % TEST_EVERY == 0 ? ADCGS_SPLIT_TEST : ADCGS_SPLIT_TRAIN))
@@ -275,11 +292,12 @@ static adcgs_status read_model(reader *r, int with_points)
             return read_file(r, files[i]); /* reports the error */
     ADCGS_TRY(read_file(r, ADCGS_COLMAP_CAMERAS));
     if (!r->model.n_cameras)
-        return bad_file(r, "cameras", "no cameras, expected at least one");
+        return bad_file(r, ADCGS_COLMAP_CAMERAS, "no cameras, expected at least one");
     ADCGS_TRY(read_file(r, ADCGS_COLMAP_IMAGES));
     if (r->model.n_images < 2)
-        return bad_file(r, "images", r->model.n_images ? "1 image, expected at least two: the first is for testing"
-                                                       : "0 images, expected at least two: the first is for testing");
+        return bad_file(r, ADCGS_COLMAP_IMAGES,
+                        r->model.n_images ? "1 image, expected at least two: the first is for testing"
+                                          : "0 images, expected at least two: the first is for testing");
     if (!(r->calibrated = calloc(r->model.n_cameras + 1, sizeof *r->calibrated)))
         return no_memory(r);
     char *video = find_video(r, r->model.images[0].name);

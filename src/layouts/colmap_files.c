@@ -33,31 +33,40 @@ int adcgs_colmap_format(const char *directory, const char *place, int *format)
     return 0;
 }
 
-int adcgs_colmap_has(const adcgs_colmap_place *place, adcgs_colmap_file file)
+/** The format of one of the files: that of the place, or the other if the file exists only in that. */
+static int format_of(const adcgs_colmap_place *place, adcgs_colmap_file file)
 {
-    return adcgs_is_there_at("%s%s.%s", place->folder, names[file], formats[place->format].end);
+    const int other = !place->format;
+    const int has_own = adcgs_is_there_at("%s%s.%s", place->folder, names[file], formats[place->format].end);
+    return !has_own && adcgs_is_there_at("%s%s.%s", place->folder, names[file], formats[other].end) ? other : place->format;
 }
 
-const char *adcgs_colmap_end(const adcgs_colmap_place *place)
+int adcgs_colmap_has(const adcgs_colmap_place *place, adcgs_colmap_file file)
 {
-    return formats[place->format].end;
+    return adcgs_is_there_at("%s%s.%s", place->folder, names[file], formats[format_of(place, file)].end);
+}
+
+const char *adcgs_colmap_end(const adcgs_colmap_place *place, adcgs_colmap_file file)
+{
+    return formats[format_of(place, file)].end;
 }
 
 adcgs_status adcgs_colmap_load(adcgs_colmap *model, const adcgs_colmap_place *place, adcgs_colmap_file file, adcgs_error *error)
 {
-    char *path = adcgs_path("%s%s.%s", place->folder, names[file], formats[place->format].end);
+    const int format = format_of(place, file);
+    char *path = adcgs_path("%s%s.%s", place->folder, names[file], formats[format].end);
     uint8_t *data = NULL;
     size_t bytes;
     if (!path)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", place->folder);
     model->path = path;
     model->error = error;
-    adcgs_status status = formats[place->format].is_text ? adcgs_file_load_text(&data, &bytes, path, FILE_MAX, error)
-                                                         : adcgs_file_load(&data, &bytes, path, FILE_MAX, error);
+    adcgs_status status = formats[format].is_text ? adcgs_file_load_text(&data, &bytes, path, FILE_MAX, error)
+                                                  : adcgs_file_load(&data, &bytes, path, FILE_MAX, error);
     if (status == ADCGS_ERR_IO && !adcgs_colmap_has(place, file))
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: no such file; a COLMAP model has cameras, images, points3D", path);
     if (status == ADCGS_OK)
-        status = formats[place->format].parse[file](model, data, bytes);
+        status = formats[format].parse[file](model, data, bytes);
     if (status == ADCGS_OK && file == ADCGS_COLMAP_POINTS)
         adcgs_points_round(&model->points);
     if (status == ADCGS_OK && file == ADCGS_COLMAP_CAMERAS)

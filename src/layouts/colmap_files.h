@@ -30,8 +30,8 @@ void adcgs_colmap_leave(adcgs_colmap_place *place);
 /** True if "DIRECTORY/PLACE" contains any file of a model; *format is its format. place is empty or ends with its slash. */
 int adcgs_colmap_format(const char *directory, const char *place, int *format);
 int adcgs_colmap_has(const adcgs_colmap_place *place, adcgs_colmap_file file);
-/** The extension of the files: "bin" or "txt". */
-const char *adcgs_colmap_end(const adcgs_colmap_place *place);
+/** The extension of a file: "bin" or "txt". A file has the format of its place, or the other if it exists only in that. */
+const char *adcgs_colmap_end(const adcgs_colmap_place *place, adcgs_colmap_file file);
 /** Reads one of the files, and sorts its elements. ADCGS_ERR_DATA, naming the file, if it is missing. */
 adcgs_status adcgs_colmap_load(adcgs_colmap *model, const adcgs_colmap_place *place, adcgs_colmap_file file, adcgs_error *error);
 

@@ -198,6 +198,8 @@ adcgs_status adcgs_colmap_add_image(adcgs_colmap *model, uint32_t id, const doub
                                     const char *name)
 {
     adcgs_colmap_image image = {.id = id, .camera_id = camera_id};
+    while (name[0] == '.' && name[1] == '/')
+        name += 2;
     if (!is_plain_name(name))
         return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "expected the name of an image below the folder, not \"%.64s\"", name);
     if (!invert_pose(q, t, image.cam_to_world))

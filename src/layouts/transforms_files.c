@@ -93,6 +93,8 @@ adcgs_status adcgs_transforms_find(char **out, const char *folder, const char *n
         status = try_parts(out, folder, plain, error);
     if (status == ADCGS_OK && !*out)
         status = try_reduced(out, folder, plain, error);
+    if (status == ADCGS_OK && !*out && *plain != '/' && !has_drive(plain))
+        status = adcgs_find_image_like(out, folder, plain, error);
     free(plain);
     return status;
 }

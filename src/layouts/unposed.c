@@ -18,12 +18,20 @@ typedef struct stems {
     size_t n;
 } stems;
 
-/** A path without its extension, from malloc(). */
+/** Returns a path without its extension, and without parts that are empty or ".", from malloc(). */
 static char *stem_of(const char *path)
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
     const size_t n = dot && (!slash || dot > slash + 1) ? (size_t)(dot - path) : strlen(path);
-    return strndup(path, n);
+    char *stem = strndup(path, n);
+    for (char *c = stem; c && (c = strchr(c, '/'));) {
+        const size_t more = c[1] == '/' ? 1 : c[1] == '.' && c[2] == '/' ? 2 : 0;
+        if (more)
+            memmove(c, c + more, strlen(c + more) + 1);
+        else
+            c++;
+    }
+    return stem;
 }
 
 static int compare(const void *a, const void *b)

@@ -238,12 +238,50 @@ static void test_folders(void **state)
     expect_remark("2 of 11 images in images/", "");
 }
 
+/** Names that begin with ./ or differ in letter case or extension find their images and masks. */
+static void test_likeness(void **state)
+{
+    static const char *const names[] = {"./%d.ppm", "%d.PPM", "%d.Jpeg"};
+    put_images(9, "images", "%d.ppm");
+    put_images(9, "masks", "%d.ppm");
+    put_folder("sparse");
+    for (size_t i = 0; i < ADCGS_COUNTOF(names); i++) {
+        put_model_text("sparse", 9, names[i], CAMERA);
+        expect_views(9, 0);
+        assert_string_equal(scene->views[ADCGS_SPLIT_TRAIN][0].camera.name, "1");
+        assert_non_null(scene->views[ADCGS_SPLIT_TRAIN][0].mask);
+    }
+    assert_int_equal(remove(in("images/0.ppm")), 0);
+    adcgs_scene_free(&scene);
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "images/0.Jpeg: no such image", "");
+}
+
+/** Each file of a model is read in the format that exists, independently of the other files. */
+static void test_mixed(void **state)
+{
+    static const char *const files[] = {"cameras", "images", "points3D"};
+    put_images(9, "images", "%d.ppm");
+    put_folder("sparse");
+    for (int bits = 0; bits < 8; bits++) {
+        put_model_text("sparse", 9, "%d.ppm", CAMERA);
+        put_model_binary("sparse", 9, "%d.ppm");
+        for (int f = 0; f < 3; f++) {
+            char name[40];
+            snprintf(name, sizeof name, "sparse/%s.%s", files[f], bits >> f & 1 ? "bin" : "txt");
+            assert_int_equal(remove(in(name)), 0);
+        }
+        expect_views(9, 0);
+        assert_int_equal(scene->points.n, count_kept_points(9, 8));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_far, clean),     cmocka_unit_test_teardown(test_lines, clean),
         cmocka_unit_test_teardown(test_bad_lines, clean), cmocka_unit_test_teardown(test_several, clean),
         cmocka_unit_test_teardown(test_places, clean),  cmocka_unit_test_teardown(test_folders, clean),
+        cmocka_unit_test_teardown(test_likeness, clean), cmocka_unit_test_teardown(test_mixed, clean),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

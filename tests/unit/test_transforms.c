@@ -252,6 +252,33 @@ static void test_paths(void **state)
     open_bad("frames[0].file_path: no such image: images/x0.ppm", "");
 }
 
+/** Names in another letter case or with another extension find their image, if only one file matches. */
+static void test_likeness(void **state)
+{
+    static const char *const good[] = {"images/%d.PPM", "./Images/%d.ppm", "IMAGES\\\\%d.Ppm", "images/%d.jpg", "images/./%d.ppm",
+                                       "Images/%d"};
+    put_images("images", 9, RIG_WIDTH, RIG_HEIGHT);
+    for (size_t i = 0; i < ADCGS_COUNTOF(good); i++) {
+        char frame[100];
+        snprintf(frame, sizeof frame, "\"file_path\":\"%s\"", good[i]);
+        put_file("transforms.json", "\"fl_x\":20,", frame, 0, 9);
+        open_good(0);
+        assert_string_equal(train(0)->camera.name, "1");
+        assert_int_equal(train(0)->camera.width, RIG_WIDTH);
+    }
+    put_picture("images/1.PPM", 1, 12, 16);
+    put_file("transforms.json", "\"fl_x\":20,", "\"file_path\":\"images/%d.ppm\",\"fl_x\":20", 0, 9); /* exact: preferred */
+    open_good(0);
+    assert_int_equal(train(0)->camera.width, RIG_WIDTH);
+    put_file("transforms.json", "\"fl_x\":20,", "\"file_path\":\"images/%d.Ppm\"", 0, 9);
+    open_bad("frames[1].file_path: no such image: images/1.Ppm", "");
+    put_picture("images/0.png", 0, 12, 16);
+    put_file("transforms.json", "\"fl_x\":20,", "\"file_path\":\"images/%d.PPM\"", 0, 1);
+    open_bad("no frame is left", "");
+    put_file("transforms.json", "\"fl_x\":20,", "\"file_path\":\"images/%d.jpg\"", 0, 1); /* two files match */
+    open_bad("frames[0].file_path: no such image: images/0.jpg", "");
+}
+
 /** Missing points are skipped with a remark. An error in a field of the whole file is reported without a frame. */
 static void test_root(void **state)
 {
@@ -275,6 +302,7 @@ int main(void)
         cmocka_unit_test_teardown(test_times, clean),     cmocka_unit_test_teardown(test_no_times, clean),
         cmocka_unit_test_teardown(test_names, clean),     cmocka_unit_test_teardown(test_lists, clean),
         cmocka_unit_test_teardown(test_paths, clean),     cmocka_unit_test_teardown(test_root, clean),
+        cmocka_unit_test_teardown(test_likeness, clean),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
