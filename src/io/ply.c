@@ -8,6 +8,7 @@
 #include "io/ply.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -365,4 +366,28 @@ adcgs_ply_property *adcgs_ply_find(adcgs_ply *ply, const char *name)
 adcgs_status adcgs_ply_vertices(adcgs_ply *ply, adcgs_ply_take_fn take, void *user)
 {
     return read_element(ply, &ply->vertex, take, user);
+}
+
+adcgs_status adcgs_ply_survey(adcgs_ply *ply, adcgs_ply_take_fn take, void *user)
+{
+    const uint8_t *const at = ply->at;
+    const int line = ply->line;
+    const adcgs_status status = read_element(ply, &ply->vertex, take, user);
+    ply->at = at;
+    ply->line = line;
+    return status;
+}
+
+void adcgs_ply_offset(const adcgs_ply *ply, double offset[3])
+{
+    const char *at = NULL;
+    size_t n;
+    offset[0] = offset[1] = offset[2] = 0.0;
+    while (adcgs_ply_comment(ply, &at, &n)) {
+        char text[128];
+        double v[3];
+        snprintf(text, sizeof text, "%.*s", (int)(n < sizeof text ? n : 0), at);
+        if (sscanf(text, "offset %lf %lf %lf", &v[0], &v[1], &v[2]) == 3 && isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]))
+            memcpy(offset, v, sizeof v);
+    }
 }

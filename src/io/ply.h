@@ -77,5 +77,9 @@ adcgs_ply_property *adcgs_ply_find(adcgs_ply *ply, const char *name);
 typedef void (*adcgs_ply_take_fn)(void *user, uint64_t vertex, const adcgs_ply_property *property, double value);
 /** Pass every number of a property with a role to take(), in file order. */
 adcgs_status adcgs_ply_vertices(adcgs_ply *ply, adcgs_ply_take_fn take, void *user);
+/** Like adcgs_ply_vertices(), but keeps the position in the file, so that the vertices can be read again. */
+adcgs_status adcgs_ply_survey(adcgs_ply *ply, adcgs_ply_take_fn take, void *user);
+/** Sets the offset of all positions, from a comment "offset X Y Z"; zero without one. */
+void adcgs_ply_offset(const adcgs_ply *ply, double offset[3]);
 
 #endif

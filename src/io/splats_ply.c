@@ -4,6 +4,7 @@
 
 #include "io/splats_ply.h"
 
+#include "io/offset.h"
 #include "io/ply.h"
 
 #include <math.h>
@@ -22,6 +23,7 @@ static const char *const names[REST] = {"x",       "y",       "z",       "f_dc_0
 
 typedef struct taker {
     adcgs_splats *out;
+    double shift[3]; /**< subtracted from binary64 positions before they are rounded to binary32 */
     float *to[REST];
     size_t n_rest;
     int fault;      /**< role of the first invalid number, or -1 */
@@ -38,7 +40,7 @@ static int may_be(int role, float v)
 static void take(void *user, uint64_t vertex, const adcgs_ply_property *property, double value)
 {
     taker *t = user;
-    const float v = (float)value;
+    const float v = (float)(property->role < DC ? value - t->shift[property->role] : value);
     if (t->fault < 0 && !may_be(property->role, v)) {
         t->fault = property->role;
         t->where = vertex;
@@ -82,6 +84,9 @@ static adcgs_status find_rest(adcgs_ply *ply, int *out, size_t *n_rest)
             break;
         ADCGS_TRY(give_role(ply, name, REST + (int)*n_rest));
     }
+    if (*n_rest == REST_MAX && adcgs_ply_find(ply, "f_rest_45"))
+        return adcgs_fail(ply->error, ADCGS_ERR_UNSUPPORTED, "%s: harmonics of degree 4 or more (it has f_rest_45), expected "
+                          "degree 3 at most", ply->path);
     for (int degree = 0; degree <= ADCGS_SPLATS_DEGREE_MAX; degree++)
         if (*n_rest == 3 * ((size_t)(degree + 1) * (size_t)(degree + 1) - 1)) {
             *out = degree;
@@ -176,6 +181,65 @@ static adcgs_status check_kind(adcgs_ply *ply)
     return ADCGS_OK;
 }
 
+/* ---- Positions far from the origin ---- */
+
+#define SAMPLES 1024 /* most positions that the median is computed from */
+
+/** Positions of some vertices, evenly spread over the file. */
+typedef struct survey {
+    uint64_t step;
+    size_t n[3];
+    double values[3][SAMPLES];
+} survey;
+
+static void sample(void *user, uint64_t vertex, const adcgs_ply_property *property, double value)
+{
+    survey *s = user;
+    if (property->role >= MEAN && property->role < DC && vertex % s->step == 0 && isfinite(value) &&
+        s->n[property->role] < SAMPLES)
+        s->values[property->role][s->n[property->role]++] = value;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/** The rounded median of binary64 positions if it is far from the origin compared with their spread, else zero. */
+static adcgs_status find_shift(adcgs_ply *ply, double shift[3])
+{
+    double middle[3] = {0.0, 0.0, 0.0}, spread = 0.0;
+    survey *s = calloc(1, sizeof *s);
+    if (!s)
+        return adcgs_fail(ply->error, ADCGS_ERR_MEMORY, "%s: out of memory", ply->path);
+    s->step = ply->vertex.count / SAMPLES + 1;
+    const adcgs_status status = adcgs_ply_survey(ply, sample, s);
+    for (int a = 0; a < 3 && status == ADCGS_OK && s->n[a]; a++) {
+        qsort(s->values[a], s->n[a], sizeof **s->values, compare);
+        middle[a] = s->values[a][s->n[a] / 2];
+        for (size_t i = 0; i < s->n[a]; i++)
+            s->values[a][i] = fabs(s->values[a][i] - middle[a]);
+        qsort(s->values[a], s->n[a], sizeof **s->values, compare);
+        spread = fmax(spread, s->values[a][s->n[a] / 2]);
+    }
+    adcgs_offset_of(shift, middle, spread > 0.0 ? spread : 1.0);
+    free(s);
+    return status;
+}
+
+/** Sets the splats' offset: the one that the file states, plus the shift of binary64 positions. */
+static adcgs_status take_offset(adcgs_ply *ply, taker *t)
+{
+    const adcgs_ply_property *const x = adcgs_ply_find(ply, names[MEAN]);
+    if (x->type == ADCGS_PLY_FLOAT64)
+        ADCGS_TRY(find_shift(ply, t->shift));
+    adcgs_ply_offset(ply, t->out->offset);
+    for (int a = 0; a < 3; a++)
+        t->out->offset[a] += t->shift[a];
+    return ADCGS_OK;
+}
+
 /** True for surfels of 2D Gaussian splatting, which have only two scales. */
 static int are_surfels(adcgs_ply *ply)
 {
@@ -196,6 +260,7 @@ static adcgs_status read_splats(adcgs_ply *ply, adcgs_splats *out)
     if (!ply->vertex.count)
         return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: no splats", ply->path);
     ADCGS_TRY(adcgs_splats_alloc(out, ply->vertex.count, ply->path, ply->error));
+    ADCGS_TRY(take_offset(ply, &t));
     out->antialiased = !surfels && says_antialiased(ply);
     out->degree = degree;
     out->harmonics = t.n_rest ? malloc(out->n * t.n_rest * sizeof *out->harmonics) : NULL;

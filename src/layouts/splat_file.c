@@ -148,7 +148,7 @@ static adcgs_status take_points(adcgs_points *out, const adcgs_splats *s, const 
         if (s->opacity[i] < POINT_OPACITY)
             continue;
         for (int a = 0; a < 3; a++) {
-            out->position[n][a] = s->mean[a][i];
+            out->position[n][a] = s->offset[a] + (double)s->mean[a][i];
             out->colour[n][a] = to_byte(s->colour[a][i]);
         }
         n++;
@@ -170,6 +170,8 @@ adcgs_status adcgs_splat_scene_read(adcgs_scene *scene, int want_points, const c
     if (want_points)
         ADCGS_TRY(take_points(&scene->points, &s->splats, path, error));
     normalise(s);
+    for (int a = 0; a < 3; a++) /* in world coordinates; the splats are relative to the offset */
+        s->centre[a] += s->splats.offset[a];
     for (int split = 0; split < ADCGS_SPLITS; split++)
         ADCGS_TRY(add_views(scene, split, path, error));
     scene->axes = s->splats.axes;

@@ -101,6 +101,7 @@ static adcgs_status measure(const adcgs_scene *scene, const char *path, double t
     uint32_t n = 0;
     ADCGS_TRY(adcgs_splats_read(&splats.splats, path, error));
     bound(&splats.splats, clip);
+    memcpy(splats.centre, splats.splats.offset, sizeof splats.centre);
     adcgs_status status = ADCGS_OK;
     for (uint32_t i = 0; i < scene->n_views[ADCGS_SPLIT_TEST] && status == ADCGS_OK; i++) {
         const adcgs_scene_view *const view = &scene->views[ADCGS_SPLIT_TEST][i];

@@ -223,6 +223,26 @@ static void test_far(void **state)
     expect_places(5.1, 0.0, 0);
 }
 
+/** Colours from 0 to 255 in wider types, MeshLab's former names, colours of splats, and an offset in a comment. */
+static void test_others(void **state)
+{
+    static const float p[3] = {1.0f, -2.0f, 0.5f};
+    static const uint8_t orange[3] = {255, 128, 0};
+    static const char *const types[] = {"float", "double", "short", "ushort", "int", "uint"};
+    char text[1000];
+    for (size_t i = 0; i < ADCGS_COUNTOF(types); i++) {
+        snprintf(text, sizeof text, HEAD "2" XYZ "property %s red\nproperty %s green\nproperty %s blue\nend_header\n7 7 7 9 9 9\n"
+                 "1 -2 .5 255 128 0\n", types[i], types[i], types[i]);
+        expect_points(text, strlen(text), 2, p, orange);
+    }
+    expect_points(TEXT(HEAD "1" XYZ "property uchar diffuse_red\nproperty uchar diffuse_green\nproperty uchar diffuse_blue\n"
+                       "end_header\n1 -2 .5 255 128 0\n"), 1, p, orange);
+    expect_points(TEXT(HEAD "1" XYZ "property float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\n"
+                       "end_header\n1 -2 .5 1.8 0.007 -1.9\n"), 1, p, orange);
+    expect_points(TEXT("ply\nformat ascii 1.0\ncomment offset 1000000.5 -2 0\nelement vertex 1" XYZ "end_header\n-999999.5 0 .5"),
+                  1, p, (const uint8_t[3]){128, 128, 128});
+}
+
 /** One byte of a good file at a time gets another value: any outcome but a crash. */
 static void test_mutations(void **state)
 {
@@ -363,7 +383,7 @@ int main(void)
         cmocka_unit_test(test_variants),   cmocka_unit_test(test_damage),    cmocka_unit_test(test_too_many_properties),
         cmocka_unit_test(test_round_trip), cmocka_unit_test(test_mutations), cmocka_unit_test(test_draco),
         cmocka_unit_test(test_real_files), cmocka_unit_test(test_npy),       cmocka_unit_test(test_bad_npy),
-        cmocka_unit_test(test_draco_writing), cmocka_unit_test(test_far),
+        cmocka_unit_test(test_draco_writing), cmocka_unit_test(test_far),         cmocka_unit_test(test_others),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

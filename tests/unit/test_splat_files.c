@@ -153,6 +153,21 @@ static void test_other_kinds(void **state)
                  "give a point cloud with a scene, by --points");
 }
 
+/** Harmonics above degree 3 are refused; coefficients of one channel would be read as those of another. */
+static void test_degrees(void **state)
+{
+    static char text[8192];
+    adcgs_splats s;
+    int n = sprintf(text, "ply\nformat ascii 1.0\nelement vertex 1\n" PROPERTIES "property float scale_2\n" TURN);
+    for (int i = 0; i < 72; i++)
+        n += sprintf(text + n, "property float f_rest_%d\n", i);
+    n += sprintf(text + n, "end_header\n1 2 3 0 0.5 -1 2 -4 -3 -2 1 0 0 0");
+    for (int i = 0; i < 72; i++)
+        n += sprintf(text + n, " 0.1");
+    put_text("t.ply", text);
+    expect_error(adcgs_splats_read(&s, in("t.ply"), &error), ADCGS_ERR_UNSUPPORTED, "t.ply: harmonics of degree 4", "f_rest_45");
+}
+
 /* ---- Far from the origin ---- */
 
 /** A decoder's splats in earth-centred metres keep their shape in every format, and GLB and PLY store their place. */
@@ -178,7 +193,7 @@ static void test_far(void **state)
                 near(back.mean[a][i], (float)(origin[a] - s.offset[a] + 10.0 * (double)model.mean[a][i]), 1e-6,
                      k == 2 ? 1e-5 : 1e-6);
         for (int a = 0; a < 3; a++)
-            assert_true(back.offset[a] == (k == 1 ? s.offset[a] : 0.0));
+            assert_true(back.offset[a] == (k < 2 ? s.offset[a] : 0.0));
         adcgs_splats_free(&back);
         char *const text = (char *)load(formats[k], &bytes);
         assert_true(k || strstr(text, "\ncomment offset 4510728 -1512344 4260120\n"));
@@ -189,6 +204,41 @@ static void test_far(void **state)
     assert_true(nowhere[0] == 0.0 && !adcgs_offset_is(nowhere));
     adcgs_splats_free(&s);
     adcgs_splats_free(&model);
+}
+
+/** Positions in binary64 keep millimetres. The scene of such a file, or of one with an offset, has the file's position. */
+static void test_far_files(void **state)
+{
+    static const double place[3] = {4510731.0, -1512345.0, 4260123.0};
+    static const char head[] = "ply\nformat ascii 1.0\n%selement vertex 27\nproperty %s x\nproperty %s y\nproperty %s z\n";
+    for (int is_double = 0; is_double < 2; is_double++) {
+        static char text[16384];
+        const char *const type = is_double ? "double" : "float", *properties = strstr(PROPERTIES, "property float f_dc_0");
+        adcgs_splats s;
+        adcgs_scene *scene;
+        double centre[3] = {0.0, 0.0, 0.0};
+        int n = sprintf(text, head, is_double ? "" : "comment offset 4510731 -1512345 4260123\n", type, type, type);
+        n += sprintf(text + n, "%sproperty float scale_2\n" TURN "end_header\n", properties);
+        for (int i = 0; i < 27; i++) {
+            const double x[3] = {0.001 * (i % 3 - 1), 0.002 * (i / 3 % 3 - 1), 0.003 * (i / 9 - 1)};
+            for (int a = 0; a < 3; a++)
+                n += sprintf(text + n, "%.17g ", x[a] + (is_double ? place[a] : 0.0));
+            n += sprintf(text + n, "0 0.5 -1 2 -9 -9 -9 1 0 0 0\n");
+        }
+        put_text("f.ply", text);
+        expect_good(adcgs_splats_read(&s, in("f.ply"), &error));
+        for (int i = 0; i < 27; i++)
+            near((float)(s.offset[0] - place[0] + (double)s.mean[0][i]), (float)(0.001 * (i % 3 - 1)), 0.0, 2e-9);
+        adcgs_splats_free(&s);
+        expect_good(adcgs_scene_open(&scene, in("f.ply"), NULL, &error));
+        const uint32_t views = scene->n_views[ADCGS_SPLIT_TRAIN];
+        for (uint32_t i = 0; i < views; i++)
+            for (int a = 0; a < 3; a++)
+                centre[a] += scene->views[ADCGS_SPLIT_TRAIN][i].camera.cam_to_world[4 * a + 3] / views;
+        for (int a = 0; a < 3; a++)
+            assert_true(fabs(centre[a] - place[a]) < 0.1 && fabs(scene->points.position[13][a] - place[a]) < 1e-6);
+        adcgs_scene_free(&scene);
+    }
 }
 
 /* ---- Antialiasing ---- */
@@ -298,7 +348,8 @@ int main(void)
         cmocka_unit_test(test_headers),     cmocka_unit_test(test_cr_alone), cmocka_unit_test(test_many_properties),
         cmocka_unit_test(test_infinities),  cmocka_unit_test(test_surfels),  cmocka_unit_test(test_other_kinds),
         cmocka_unit_test(test_comments),    cmocka_unit_test(test_written),  cmocka_unit_test(test_antialiased),
-        cmocka_unit_test(test_scenes),      cmocka_unit_test(test_far),
+        cmocka_unit_test(test_scenes),      cmocka_unit_test(test_far),      cmocka_unit_test(test_far_files),
+        cmocka_unit_test(test_degrees),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
