@@ -7,6 +7,7 @@
 #include "data/pose.h"
 #include "io/file.h"
 #include "io/image.h"
+#include "io/kind.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -16,6 +17,17 @@
 #define FILE_MAX ((uint64_t)256 << 20)
 #define FRAMES_MAX 1000000
 #define TERM_MAX 1e6 /* largest magnitude of a distortion coefficient */
+
+/** Reports the kind of a file that does not begin like JSON, if it is known, else jansson's error. */
+static adcgs_status refuse_text(const char *path, const uint8_t *text, const json_error_t *where, adcgs_error *error)
+{
+    const adcgs_kind *const kind = adcgs_kind_at(path);
+    while (*text == ' ' || *text == '\t' || *text == '\r' || *text == '\n')
+        text++;
+    if (kind->class != ADCGS_KIND_UNKNOWN && *text != '{' && *text != '[')
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %s, expected JSON", path, kind->name);
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: line %d: malformed JSON: %s", path, where->line, where->text);
+}
 
 adcgs_status adcgs_json_load(json_t **root, const char *path, adcgs_error *error)
 {
@@ -29,9 +41,9 @@ adcgs_status adcgs_json_load(json_t **root, const char *path, adcgs_error *error
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected JSON", path);
     }
     json_t *value = json_loadb((const char *)text, bytes, JSON_REJECT_DUPLICATES, &where);
+    const adcgs_status status = value ? ADCGS_OK : refuse_text(path, text, &where, error);
     free(text);
-    if (!value)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: line %d: malformed JSON: %s", path, where.line, where.text);
+    ADCGS_TRY(status);
     if (!json_is_object(value)) {
         json_decref(value);
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: expected a JSON object", path);

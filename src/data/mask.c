@@ -92,6 +92,8 @@ adcgs_status adcgs_mask_settle(adcgs_image *mask, const char *path, adcgs_error 
 int adcgs_mask_fits(int width, int height, int image_width, int image_height)
 {
     const double x = (double)image_width / width, y = (double)image_height / height, slack = fmax(1.0, fmax(x, y));
+    if ((width == image_width) != (height == image_height))
+        return 0;
     return fabs(image_width - y * width) <= slack || fabs(image_height - x * height) <= slack;
 }
 

@@ -14,7 +14,7 @@
  * alpha contradict each other.
  */
 adcgs_status adcgs_mask_settle(adcgs_image *mask, const char *path, adcgs_error *error);
-/** True if a mask of this size fits an image of that size: the aspect ratios are equal, to one pixel of either. */
+/** True if a mask fits an image: both sizes are equal, or both differ, and the aspect ratio is the same to one pixel. */
 int adcgs_mask_fits(int width, int height, int image_width, int image_height);
 /** Scales a fitting mask to the size of its image; each pixel takes the value of the nearest one. */
 adcgs_status adcgs_mask_resize(adcgs_image *mask, int width, int height, const char *path, adcgs_error *error);

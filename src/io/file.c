@@ -99,6 +99,11 @@ size_t adcgs_file_mark(const void *text, size_t bytes)
 adcgs_status adcgs_file_load_text(uint8_t **data, size_t *bytes, const char *path, uint64_t limit, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_file_load(data, bytes, path, limit, error));
+    if (*bytes >= 2 && ((**data == 0xff && (*data)[1] == 0xfe) || (**data == 0xfe && (*data)[1] == 0xff))) {
+        free(*data);
+        *data = NULL;
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: text in UTF-16, expected UTF-8: save it in UTF-8", path);
+    }
     const size_t mark = adcgs_file_mark(*data, *bytes);
     *bytes -= mark;
     memmove(*data, *data + mark, *bytes + 1);

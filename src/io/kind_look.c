@@ -98,6 +98,7 @@ static const magic magics[] = {
     {AT(0, "NVM_V3"), NO_SCENE("VisualSFM's model (NVM)", TO_COLMAP)},
     {AT(0, "# Bundle file"), NO_SCENE("Bundler's model", TO_COLMAP)},
     {AT(0, "#name,x,y,"), NO_SCENE("RealityCapture's cameras (CSV)", TO_COLMAP)},
+    {AT(0, "%YAML"), NO_SCENE("a YAML file, as OpenCV and EasyMocap write cameras", TO_COLMAP)},
     {AT(0, "#usda"), NO_SCENE("a USD scene", TO_COLMAP)},
     {AT(0, "PXR-USDC"), NO_SCENE("a USD scene", TO_COLMAP)},
     {AT(0, "Kaydara FBX"), OTHER("a scene of polygons (FBX)", NULL)},

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Captures in formats that are recognised by their fields, but not read. */
+/** \file Captures in formats that are recognised by their fields or files, but not read. */
 #include "config.h"
 
 #include "layouts/captures.h"
@@ -16,6 +16,35 @@ adcgs_status adcgs_capture_refuse(json_t *root, const char *path, adcgs_error *e
         return ADCGS_OK;
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: metadata of a Record3D capture, which is not supported: convert it "
                       "to a folder with transforms.json by nerfstudio's ns-process-data record3d", path);
+}
+
+#define TO_TRANSFORMS(how) "convert it to a folder with transforms.json by nerfstudio's ns-process-data " how
+#define TO_SPLATS "give its point_cloud/iteration_N/point_cloud.ply"
+#define AS_COLMAP "export the cameras as a COLMAP model, or as transforms.json"
+
+/** Files or folders that identify the output of a program. */
+static const struct {
+    const char *files[2]; /**< the second may be NULL */
+    const char *name, *advice;
+} captures[] = {
+    {{"cfg_args", "point_cloud"}, "the output of 3D Gaussian splatting", TO_SPLATS},
+    {{"cameras.json", "point_cloud"}, "the output of 3D Gaussian splatting", TO_SPLATS},
+    {{"keyframes/cameras", "keyframes/images"}, "a Polycam capture", TO_TRANSFORMS("polycam")},
+    {{"keyframes/corrected_cameras", NULL}, "a Polycam capture", TO_TRANSFORMS("polycam")},
+    {{"intri.yml", "extri.yml"}, "an EasyMocap scene", AS_COLMAP},
+    {{"annots.npy", NULL}, "a ZJU-MoCap scene", AS_COLMAP},
+    {{"cameras_sphere.npz", NULL}, "a scene for IDR or NeuS", AS_COLMAP},
+    {{"intrinsics.txt", "pose"}, "an NSVF scene", AS_COLMAP},
+};
+
+static adcgs_status refuse_files(const char *folder, adcgs_error *error)
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(captures); i++)
+        if (adcgs_is_there_at("%s/%s", folder, captures[i].files[0]) &&
+            (!captures[i].files[1] || adcgs_is_there_at("%s/%s", folder, captures[i].files[1])))
+            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: %s (it has %s), which is not supported: %s", folder,
+                              captures[i].name, captures[i].files[0], captures[i].advice);
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_capture_refuse_folder(const char *folder, adcgs_error *error)
@@ -35,5 +64,5 @@ adcgs_status adcgs_capture_refuse_folder(const char *folder, adcgs_error *error)
         free(path);
         ADCGS_TRY(status);
     }
-    return ADCGS_OK;
+    return refuse_files(folder, error);
 }

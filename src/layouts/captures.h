@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Captures in formats that are recognised by their fields, but not read. */
+/** \file Captures in formats that are recognised by their fields or files, but not read. */
 #ifndef ADCGS_LAYOUTS_CAPTURES_H
 #define ADCGS_LAYOUTS_CAPTURES_H
 
@@ -9,7 +9,7 @@
 
 /** Returns ADCGS_ERR_UNSUPPORTED for the metadata of Record3D, naming the program and a converter; path is the file's. */
 adcgs_status adcgs_capture_refuse(json_t *root, const char *path, adcgs_error *error);
-/** The same for a folder that contains such a file. ADCGS_ERR_MEMORY. */
+/** The same for a folder that contains such a file, or files of another program. ADCGS_ERR_MEMORY. */
 adcgs_status adcgs_capture_refuse_folder(const char *folder, adcgs_error *error);
 
 #endif

@@ -36,6 +36,7 @@
 #define NEAR_PER_DISTANCE 0.01
 #define DISTANCE_MIN 1e-9       /* well within a stream's range */
 #define DISTANCE_MAX 1e10
+#define FOLDERS_MOST 100        /* limit of subfolders that are searched for a scene */
 #define NEAR_PER_BOUND 0.5      /* bounds hold for most points, not for all */
 #define COLOUR_SRGB 1           /* a code of adcgs_stream */
 
@@ -276,6 +277,30 @@ static adcgs_status refuse_sequence(const char *folder, adcgs_error *error)
     return status;
 }
 
+static int is_anything(const char *name)
+{
+    return *name != '.';
+}
+
+/** Refuses a folder with a scene in a subfolder, as in unpacked archives and COLMAP's dense workspaces, and names it. */
+static adcgs_status refuse_above(const char *folder, adcgs_error *error)
+{
+    adcgs_listing listing;
+    adcgs_error unused;
+    adcgs_status status = ADCGS_OK;
+    if (adcgs_listing_read(&listing, folder, is_anything, &unused) != ADCGS_OK)
+        return ADCGS_OK;
+    for (size_t i = 0; status == ADCGS_OK && i < listing.n && i < FOLDERS_MOST; i++) {
+        char *const below = adcgs_path("%s/%s", folder, listing.names[i]);
+        if (below && adcgs_is_folder(below) && find_dataset(below) != ADCGS_DATASET_AUTO)
+            status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a scene, but its folder %.100s is one: give that folder", folder,
+                                listing.names[i]);
+        free(below);
+    }
+    adcgs_listing_free(&listing);
+    return status;
+}
+
 static adcgs_status bare(const char *path, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a scene: it has no camera poses" HINT, path);
@@ -303,8 +328,9 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     case ADCGS_DATASET_SPLATS:
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats", scene->directory);
     default:
-        ADCGS_TRY(refuse_sequence(scene->directory, error));
         ADCGS_TRY(adcgs_capture_refuse_folder(scene->directory, error));
+        ADCGS_TRY(refuse_sequence(scene->directory, error));
+        ADCGS_TRY(refuse_above(scene->directory, error));
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "%s: not a scene: neither transforms_train.json, nor transforms.json, nor train_meta.json, nor "
                           "dataset.json with metadata.json and camera/, nor poses_bounds.npy, nor a COLMAP model%s",

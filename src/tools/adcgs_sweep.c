@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "cli/cli.h"
+#include "io/kind.h"
 #include "tools/sweep_many.h"
 #include "tools/sweep_options.h"
 #include "tools/sweep_run.h"
@@ -54,7 +55,8 @@ static int obey(const adcgs_cli *cli, const adcgs_sweep_request *request, const 
     if (!plan)
         return adcgs_cli_error(cli, ADCGS_ERR_MEMORY, "out of memory");
     adcgs_interrupt_catch(1);
-    if (adcgs_sweep_plan_make(plan, sweep, &error) != ADCGS_OK || adcgs_sweep_add_against(plan, sweep, &error) != ADCGS_OK ||
+    if ((sweep->scene && adcgs_kind_check(sweep->scene, ADCGS_WANT_SCENE, &error) != ADCGS_OK) ||
+        adcgs_sweep_plan_make(plan, sweep, &error) != ADCGS_OK || adcgs_sweep_add_against(plan, sweep, &error) != ADCGS_OK ||
         adcgs_sweep_add_tables(plan, sweep->tables, &error) != ADCGS_OK || adcgs_sweep_make_folder(sweep, &error) != ADCGS_OK)
         code = adcgs_cli_fail(cli, &error);
     else if (request->list)

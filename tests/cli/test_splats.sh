@@ -3,7 +3,7 @@
 # Splats and points in files: adcgs-dec --splats, adcgs-enc and adcgs-eval on a PLY of splats, adcgs-info --points.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
-need adcgs-dec adcgs-eval adcgs-enc adcgs-info adcgs-share adcgs-demo-scene
+need adcgs-dec adcgs-eval adcgs-enc adcgs-info adcgs-join adcgs-share adcgs-sweep adcgs-demo-scene
 
 # vertices FILE: the number that it declares; size FILE: bytes after its header.
 vertices() { sed -n '/^end_header/q; s/^element vertex //p' "$1"; }
@@ -102,6 +102,9 @@ expect 5 "sequence: a folder of 2 files of splats (t000.ply): sequences" ./adcgs
 expect 5 "t000.ply and 1 more files of splats" ./adcgs-enc "$dir/t000.ply" "$dir/t001.ply" -o "$dir/x.adcgs"
 expect 2 "$dir/t000.ply: one operand too many" ./adcgs-enc "$dir/scene" "$dir/t000.ply" -o "$dir/x.adcgs"
 expect 4 "s.adcgs: an adcgs stream, expected a scene: adcgs-dec" ./adcgs-enc "$s" -o "$dir/x.adcgs"
+expect 4 "s.adcgs: an adcgs stream, expected a scene: adcgs-dec" ./adcgs-sweep "$s" -o "$dir/sweep" -l 0.1
+expect 4 "s.adcgs: an adcgs stream, expected JSON" ./adcgs-join "$s" -o "$dir/x.adcgs"
+[ ! -e "$dir/sweep" ] || bad "adcgs-sweep starts without a scene"
 expect 2 "s.adcgs is a stream and .*/scene is not: give the stream first" ./adcgs-eval "$dir/scene" "$s"
 printf '<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html lang="en">' >"$dir/page"
 for program in "adcgs-info" "adcgs-info --check" "adcgs-dec --md5" "adcgs-share -o $dir/x.html"; do

@@ -233,11 +233,41 @@ static void test_record3d(void **state)
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_UNSUPPORTED, "EXR_RGBD/metadata", "Record3D");
 }
 
+/** Folders of other programs are recognised by their files; the message advises. A folder above a scene is refused, too. */
+static void test_other_folders(void **state)
+{
+    static const char *const cases[][4] = {
+        {"cfg_args", "point_cloud", "output of 3D Gaussian splatting", "give its point_cloud/iteration_N"},
+        {"intri.yml", "extri.yml", "EasyMocap", "COLMAP"},
+        {"annots.npy", "images", "ZJU-MoCap", "COLMAP"},
+        {"intrinsics.txt", "pose", "NSVF", "COLMAP"},
+        {"cameras_sphere.npz", "image", "NeuS", "COLMAP"},
+    };
+    for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
+        put_folder("x");
+        char name[64];
+        for (int k = 0; k < 2; k++) {
+            snprintf(name, sizeof name, "x/%s", cases[i][k]);
+            put_text(name, "-");
+        }
+        put_text("x/input.ply", RIG_PLY);
+        expect_error(adcgs_scene_open(&scene, in("x"), NULL, &error), ADCGS_ERR_UNSUPPORTED, cases[i][2], cases[i][3]);
+        for (int k = 0; k < 2; k++) {
+            snprintf(name, sizeof name, "x/%s", cases[i][k]);
+            assert_int_equal(remove(in(name)), 0);
+        }
+        assert_int_equal(remove(in("x/input.ply")), 0);
+    }
+    put_text("x/transforms.json", "{}");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, ": not a scene, but its folder x is one", "");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_good, clean), cmocka_unit_test_teardown(test_bad, clean),
         cmocka_unit_test_teardown(test_npz, clean), cmocka_unit_test_teardown(test_record3d, clean),
+        cmocka_unit_test_teardown(test_other_folders, clean),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -293,6 +293,8 @@ static void test_root(void **state)
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES, 0, 7);
     open_good(1);
     expect_remark("2 of 9 images in images/ have no pose", "");
+    put_bytes("transforms.json", "\xff\xfe{\0}\0", 6);
+    open_bad("transforms.json: text in UTF-16", "UTF-8");
 }
 
 int main(void)
