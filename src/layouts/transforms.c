@@ -8,6 +8,7 @@
 #include "data/paths.h"
 #include "layouts/calibration.h"
 #include "layouts/listing.h"
+#include "layouts/transforms_clock.h"
 #include "layouts/transforms_files.h"
 #include "layouts/view_lens.h"
 
@@ -44,10 +45,10 @@ static adcgs_status find_image(const place *at, const adcgs_scene *scene, char *
     return *out ? ADCGS_OK : adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.100s", name);
 }
 
-/** Finds the file of a mask named by the field; NULL if the frame has none. */
+/** Finds the file of a mask named by the field of the frame or of the whole file; NULL if there is none. */
 static adcgs_status find_mask(const place *at, const adcgs_scene *scene, const char *field, char **out)
 {
-    json_t *item = json_object_get(at->json.frame, field);
+    json_t *item = adcgs_json_find(&at->json, field);
     const char *name = json_string_value(item);
     *out = NULL;
     if (!item || json_is_null(item))
@@ -97,6 +98,23 @@ static adcgs_status fit_size(const place *at, const adcgs_scene_view *view, adcg
     return ADCGS_OK;
 }
 
+#define ANGLE_SLACK 0.1 /* tolerance, relative to the focal length */
+
+/** Checks that camera_angle_x, which programs for Blender's scenes use, agrees with fl_x, which others use, if both are given. */
+static adcgs_status check_angle(const place *at, const adcgs_lens *lens)
+{
+    json_t *const own = json_object_get(at->json.frame, "fl_x") ? at->json.frame : at->json.root;
+    json_t *const angle = json_object_get(own, "camera_angle_x");
+    if (!json_object_get(own, "fl_x") || !json_is_number(angle) || lens->is_fisheye)
+        return ADCGS_OK;
+    const double focal = 0.5 * lens->width / tan(0.5 * json_number_value(angle));
+    if (fabs(focal - lens->fx) <= ANGLE_SLACK * lens->fx)
+        return ADCGS_OK;
+    return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "fl_x", "%g, but camera_angle_x %g is %g at a width of %d pixels: "
+                          "nerfstudio uses the first, others the second; remove one", lens->fx, json_number_value(angle), focal,
+                          lens->width);
+}
+
 /** Reads the lens and derives its pinhole. */
 static adcgs_status read_camera(place *at, const adcgs_scene *scene, adcgs_scene_view *view)
 {
@@ -108,6 +126,7 @@ static adcgs_status read_camera(place *at, const adcgs_scene *scene, adcgs_scene
     view->lens.width = found ? said.width : width;
     view->lens.height = found ? said.height : height;
     ADCGS_TRY(adcgs_json_lens(&at->json, &view->lens));
+    ADCGS_TRY(check_angle(at, &view->lens));
     if (width)
         ADCGS_TRY(fit_size(at, view, &view->lens, width, height));
     char *where = adcgs_path("%s: frames[%zu]", at->json.path, at->json.index);
@@ -124,6 +143,7 @@ static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_v
     if (!json_is_object(at->json.frame))
         return adcgs_fail(at->json.error, ADCGS_ERR_DATA, "%s: frames[%zu]: expected an object", at->json.path, at->json.index);
     json_t *time = json_object_get(at->json.frame, "time");
+    time = json_is_null(time) ? NULL : time;
     if (at->json.index == 0)
         out->has_times = time != NULL;
     else if (out->has_times != (time != NULL))
@@ -248,21 +268,6 @@ static adcgs_status check_lists(const place *at, json_t *table, json_t *seen)
 
 /* ---- Frames ---- */
 
-/** Finds a field that gives the time of frames in other programs' files. */
-static const char *find_clock(json_t *frames, size_t n)
-{
-    static const char *const fields[] = {"timestamp", "timestamps", "time_stamp", "timestamp_ns", "frame_time", "capture_time",
-                                         "t", "time_id", "frame_index", "frame_id", "frame_number"};
-    for (size_t i = 0; i < ADCGS_COUNTOF(fields) && n > 1; i++) {
-        json_t *first = json_object_get(json_array_get(frames, 0), fields[i]);
-        json_t *last = json_object_get(json_array_get(frames, n - 1), fields[i]);
-        const int is_clock = (json_is_number(first) && json_is_number(last)) || (json_is_string(first) && json_is_string(last));
-        if (is_clock && !json_equal(first, last))
-            return fields[i];
-    }
-    return NULL;
-}
-
 static adcgs_status add_frame(place *at, adcgs_scene *scene, adcgs_transforms *out, json_t *table, json_t *seen,
                               adcgs_split split)
 {
@@ -298,7 +303,8 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
     if (status == ADCGS_OK && table)
         status = check_lists(at, table, seen);
     if (status == ADCGS_OK) {
-        out->clock = find_clock(frames, n);
+        const char *const clock = adcgs_transforms_clock(frames, n);
+        snprintf(out->clock, sizeof out->clock, "%s", clock ? clock : "");
         out->has_lists = table != NULL;
     }
     if (table)

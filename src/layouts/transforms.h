@@ -14,7 +14,7 @@ typedef struct adcgs_transforms {
     adcgs_fps rate;   /**< unknown if not given */
     int has_times;     /**< frames carry times */
     int has_lists;     /**< the file lists names for each split */
-    const char *clock; /**< a field of frames that is not read but differs between them like a time, or NULL */
+    char clock[64];    /**< a field of frames that is not read but differs between them like a time, or "" */
     char *points_path; /**< NULL if it names none */
 } adcgs_transforms;
 

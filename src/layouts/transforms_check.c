@@ -55,11 +55,12 @@ static size_t distinct(double *values, size_t n)
 
 static void tell_scaled(adcgs_scene *scene, const adcgs_transforms *facts, double low, double high, size_t moments)
 {
-    const double fps = (double)(moments - 1) / (high - low);
+    const double fps = (double)(moments - 1) / (high - low), far = fmax(fabs(low), fabs(high));
+    const int digits = (int)fmin(17.0, fmax(10.0, ceil(log10(far / (high - low)) + 4.0))); /* four digits of the range */
     char hint[80] = "";
     if (!facts->rate.den && moments > 1 && fps >= FPS_LEAST && fps <= FPS_MOST)
         snprintf(hint, sizeof hint, "; if these are seconds, give --fps %.4g", fps);
-    adcgs_scene_remark(scene, "time ranges from %.10g to %.10g and is scaled to 0 to 1%s", low, high, hint);
+    adcgs_scene_remark(scene, "time ranges from %.*g to %.*g and is scaled to 0 to 1%s", digits, low, digits, high, hint);
 }
 
 static adcgs_status scale_times(adcgs_scene *scene, const adcgs_transforms *facts, const char *path, adcgs_error *error)
@@ -115,7 +116,7 @@ static void tell_times(adcgs_scene *scene, const adcgs_transforms *facts, int is
 {
     if (facts->has_times)
         return;
-    if (facts->clock)
+    if (*facts->clock)
         adcgs_scene_remark(scene, "frames have %s, which is not supported, and no time: the scene is treated as static; if "
                            "it moves, give each frame a time from 0 to 1", facts->clock);
     else

@@ -75,6 +75,12 @@ static void test_own_sizes(void **state)
     put_file("transforms.json", "\"camera_angle_x\":1,", IN_IMAGES, 0, 9);
     open_good(0);
     assert_true(fabs(train(0)->camera.fx - 2.0 * train(1)->camera.fx) < 1e-9 && train(1)->camera.cx == 6.0);
+    put_file("transforms.json", "\"fl_x\":20,\"camera_angle_x\":1.0808,", IN_IMAGES ",\"w\":24,\"h\":16", 0, 1);
+    open_bad("no frame is left", "");
+    put_file("transforms.json", "\"fl_x\":80,\"camera_angle_x\":1.0808,", IN_IMAGES ",\"cx\":12", 0, 9);
+    open_bad("transforms.json: fl_x: 80, but camera_angle_x 1.0808 is 20", "at a width of 24 pixels");
+    put_file("transforms.json", "\"camera_angle_x\":1.08,", IN_IMAGES ",\"fl_x\":80", 0, 9); /* the frame's own has priority */
+    open_good(0);
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES, 0, 9); /* one focal length: ambiguous between a crop and a reduction */
     open_good(1);
     expect_remark("24x16 and 12x16", "fl_x is one for all");
@@ -120,6 +126,7 @@ static void test_times(void **state)
         {IN_IMAGES ",\"time\":0.%d", NULL},
         {IN_IMAGES ",\"time\":17000000%d.5", "time ranges from 170000000.5 to 170000008.5"},
         {IN_IMAGES ",\"time\":-%d", "time ranges from -8 to 0"},
+        {IN_IMAGES ",\"time\":1700000000000%d25", "time ranges from 1700000000000025 to 1700000000000825"},
     };
     put_images("images", 9, RIG_WIDTH, RIG_HEIGHT);
     for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
@@ -158,6 +165,17 @@ static void test_no_times(void **state)
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"t\":\"%d\"", 0, 9);
     open_good(1);
     expect_remark("frames have t, which is not supported", "");
+    static const char *const clocks[] = {"timestep_index", "Time", "frame_idx", "capturedTimeMs", "seconds"};
+    for (size_t i = 0; i < ADCGS_COUNTOF(clocks); i++) {
+        char frame[100], wanted[100];
+        snprintf(frame, sizeof frame, "\"file_path\":\"images/%%d.ppm\",\"%s\":%%d", clocks[i]);
+        put_file("transforms.json", "\"fl_x\":20,", frame, 0, 9);
+        open_good(1);
+        snprintf(wanted, sizeof wanted, "frames have %s, which is not supported", clocks[i]);
+        expect_remark(wanted, "");
+    }
+    put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"time\":null,\"colmap_im_id\":%d", 0, 9);
+    open_good(0);
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"timestamp\":7", 0, 9); /* all equal: no clock */
     open_good(0);
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"timestamp\":%d,\"time\":0", 0, 9);
