@@ -11,6 +11,7 @@
 #include "layouts/colmap_files.h"
 #include "layouts/footage.h"
 #include "layouts/listing.h"
+#include "layouts/unmasked.h"
 #include "layouts/unposed.h"
 
 #include <stdio.h>
@@ -206,6 +207,7 @@ static adcgs_status add_pictures(reader *r)
     r->scene->counts = adcgs_counting_holds(&counting);
     if (strlen(r->pictures) > strlen(r->scene->directory) + 1) /* the scene's own folder may contain unrelated files */
         ADCGS_TRY(adcgs_unposed_remark(r->scene, r->pictures, r->error));
+    ADCGS_TRY(adcgs_unmasked_remark(r->scene, "of their name in masks", r->error));
     return adcgs_frames_keep(r->scene, r->frames, r->scene->directory, r->error);
 }
 

@@ -6,6 +6,7 @@
 
 #include "data/sort.h"
 #include "layouts/listing.h"
+#include "layouts/unmasked.h"
 #include "layouts/unposed.h"
 
 #include <math.h>
@@ -254,6 +255,8 @@ adcgs_status adcgs_transforms_check(adcgs_scene *scene, const adcgs_transforms *
     adcgs_status status = find_twice(scene, list, n, !is_single || facts->has_lists, path, error);
     if (status == ADCGS_OK && n && is_single && !facts->has_lists)
         status = tell_unposed(scene, list, n, error);
+    if (status == ADCGS_OK)
+        status = adcgs_unmasked_remark(scene, "by mask_path", error);
     if (status == ADCGS_OK)
         name_apart(scene, list, n);
     free(list);

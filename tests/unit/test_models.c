@@ -251,6 +251,9 @@ static void test_likeness(void **state)
         assert_string_equal(scene->views[ADCGS_SPLIT_TRAIN][0].camera.name, "1");
         assert_non_null(scene->views[ADCGS_SPLIT_TRAIN][0].mask);
     }
+    assert_int_equal(remove(in("masks/3.ppm")), 0); /* reported */
+    expect_views(9, 1);
+    expect_remark("folder masks exists, but 1 of 9 images has no mask of", "no pixels of it are masked");
     assert_int_equal(remove(in("images/0.ppm")), 0);
     adcgs_scene_free(&scene);
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "images/0.Jpeg: no such image", "");

@@ -260,7 +260,9 @@ static void test_paths(void **state)
         snprintf(frame, sizeof frame, "\"file_path\":\"%s\"%s", good[i],
                  i == 2 ? ",\"mask_path\":\"C:\\\\x\\\\masks\\\\%d.ppm\"" : "");
         put_file("transforms.json", "\"fl_x\":20,", frame, 0, 9);
-        open_good(0);
+        open_good(i != 2);
+        if (i != 2) /* frames that name none of the masks in the folder */
+            expect_remark("folder masks exists, but 9 of 9 images have no mask by mask_path", "");
         assert_non_null(strstr(train(0)->path, "images/1.ppm"));
         assert_true(!train(0)->mask == (i != 2));
     }
@@ -311,6 +313,9 @@ static void test_root(void **state)
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES, 0, 7);
     open_good(1);
     expect_remark("2 of 9 images in images/ have no pose", "");
+    put_file("transforms.json", "\"fl_x\":20,\"mask_path\":\"images/2.ppm\",", IN_IMAGES, 0, 9); /* one for all */
+    open_good(0);
+    assert_non_null(strstr(train(0)->mask, "images/2.ppm"));
     put_bytes("transforms.json", "\xff\xfe{\0}\0", 6);
     open_bad("transforms.json: text in UTF-16", "UTF-8");
 }
