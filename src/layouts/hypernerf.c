@@ -198,14 +198,23 @@ static adcgs_status find_last(reader *r)
     return ADCGS_OK;
 }
 
+/** Finds the image of an id. folder, from malloc(), ends with a slash, and is freed. *out is NULL if there is none. */
+static adcgs_status find_file(const reader *r, char *folder, const char *id, char **out)
+{
+    char *stem = folder ? adcgs_path("%s%s", folder, id) : NULL;
+    adcgs_status status = stem ? adcgs_find_image(out, stem, r->error)
+                               : adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->images);
+    if (status == ADCGS_OK && !*out)
+        status = adcgs_find_image_like(out, folder, id, r->error);
+    free(stem);
+    free(folder);
+    return status;
+}
+
 /** Finds the mask of an id in mask/Nx/, next to the images, if there is one. */
 static adcgs_status find_mask(const reader *r, const char *id, char **mask)
 {
-    char *stem = adcgs_path("%s/mask/%dx/%s", r->scene->directory, r->divide, id);
-    const adcgs_status status = stem ? adcgs_find_image(mask, stem, r->error)
-                                     : adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->images);
-    free(stem);
-    return status;
+    return find_file(r, adcgs_path("%s/mask/%dx/", r->scene->directory, r->divide), id, mask);
 }
 
 /** On failure view->path is set or NULL; it is freed with the scene. */
@@ -218,11 +227,7 @@ static adcgs_status read_view(const reader *r, const char *id, adcgs_scene_view 
         return adcgs_json_bad(&at, ADCGS_ERR_DATA, id, "missing");
     ADCGS_TRY(read_warp(r, id, entry, &warp));
     view->time = r->last > 0.0 ? warp / r->last : 0.0;
-    char *stem = adcgs_path("%s/%s", r->images, id);
-    const adcgs_status status = stem ? adcgs_find_image(&view->path, stem, r->error)
-                                     : adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->images);
-    free(stem);
-    ADCGS_TRY(status);
+    ADCGS_TRY(find_file(r, adcgs_path("%s/", r->images), id, &view->path));
     if (!view->path)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: no image of %s", r->images, id);
     ADCGS_TRY(find_mask(r, id, &view->mask));

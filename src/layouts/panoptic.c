@@ -96,6 +96,17 @@ static adcgs_status read_pose(const reader *r, size_t t, size_t c, double pose[1
     return ADCGS_OK;
 }
 
+/** Finds an image in another letter case, or with another extension; view->path is NULL if there is none. */
+static adcgs_status find_like(const reader *r, const char *name, adcgs_scene_view *view)
+{
+    char *folder = adcgs_path("%s/ims/", r->scene->directory);
+    free(view->path);
+    view->path = NULL;
+    const adcgs_status status = folder ? adcgs_find_image_like(&view->path, folder, name, r->error) : no_memory(r);
+    free(folder);
+    return status;
+}
+
 /** Finds the image, and its foreground image if there is one. */
 static adcgs_status find_files(const reader *r, size_t t, size_t c, adcgs_scene_view *view)
 {
@@ -115,7 +126,10 @@ static adcgs_status find_files(const reader *r, size_t t, size_t c, adcgs_scene_
         free(seg);
     if (!path || !seg)
         return no_memory(r);
-    return adcgs_is_there(path) || r->scene->is_outline ? ADCGS_OK : bad(r, "fn", t, c, "there is no such image in ims/");
+    if (adcgs_is_there(path) || r->scene->is_outline)
+        return ADCGS_OK;
+    ADCGS_TRY(find_like(r, name, view));
+    return view->path ? ADCGS_OK : bad(r, "fn", t, c, "there is no such image in ims/");
 }
 
 /** Names the camera by its number, which all its images share, else by the image's folder. */

@@ -127,6 +127,10 @@ static void test_good(void **state)
     expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
     expect_scene();
     adcgs_scene_free(&scene);
+    assert_int_equal(rename(in("ims/1/000001.jpg"), in("ims/1/000001.JPG")), 0); /* another letter case */
+    expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
+    assert_int_equal(rename(in("ims/1/000001.JPG"), in("ims/1/000001.jpg")), 0);
+    adcgs_scene_free(&scene);
     expect_good(adcgs_scene_open(&scene, in("train_meta.json"), NULL, &error));
     expect_scene();
     adcgs_scene_free(&scene);
