@@ -9,6 +9,7 @@
 #include "data/pose.h"
 #include "layouts/calibration.h"
 #include "layouts/colmap_files.h"
+#include "layouts/colmap_twice.h"
 #include "layouts/footage.h"
 #include "layouts/listing.h"
 #include "layouts/unmasked.h"
@@ -306,6 +307,8 @@ static adcgs_status read_model(reader *r, int with_points)
     const int has_videos = video != NULL;
     free(video);
     tell_models(r);
+    for (int f = ADCGS_COLMAP_CAMERAS; f <= ADCGS_COLMAP_IMAGES; f++)
+        ADCGS_TRY(adcgs_colmap_twice_remark(r->scene, &r->model, &r->place, (adcgs_colmap_file)f, r->error));
     ADCGS_TRY(has_videos ? add_videos(r) : add_pictures(r));
     r->scene->axes = adcgs_pose_axes(r->scene->views[ADCGS_SPLIT_TRAIN], r->scene->n_views[ADCGS_SPLIT_TRAIN]);
     return with_points ? read_points(r, 0, has_videos ? SIZE_MAX : TEST_EVERY) : ADCGS_OK;

@@ -265,6 +265,16 @@ static void test_mixed(void **state)
     static const char *const files[] = {"cameras", "images", "points3D"};
     put_images(9, "images", "%d.ppm");
     put_folder("sparse");
+    put_model_binary("sparse", 9, "%d.ppm");
+    put_model_text("sparse", 9, "%d.ppm", CAMERA);
+    expect_views(9, 0);
+    put_text("sparse/cameras.txt", "7 PINHOLE 24 16 30 30 12 8\n"); /* differs from the binary file */
+    expect_views(9, 1);
+    expect_remark("cameras.bin is read, but cameras.txt differs from it", "");
+    assert_true(scene->views[ADCGS_SPLIT_TRAIN][0].camera.fx == RIG_FOCAL);
+    put_model_text("sparse", 8, "%d.ppm", CAMERA);
+    expect_views(9, 1);
+    expect_remark("images.bin is read, but images.txt differs", "");
     for (int bits = 0; bits < 8; bits++) {
         put_model_text("sparse", 9, "%d.ppm", CAMERA);
         put_model_binary("sparse", 9, "%d.ppm");
