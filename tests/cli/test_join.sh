@@ -98,7 +98,7 @@ plan_wrong()
     expect "$wanted" "wrong.json: $says" ./adcgs-enc "$scene" --plan "$dir/wrong.json" --segment 1
 }
 plan_wrong 4 "settings: k: expected" -e 's/"k": .*,/"k": 99,/'
-plan_wrong 4 "settings: expected the" -e 's/"k": /"new": 1, "k": /'
+plan_wrong 4 "settings: expected all" -e 's/"k": /"new": 1, "k": /'
 plan_wrong 4 "segments.1..begin: " -e 's/"begin": 0.06.*,/"begin": 0.05,/'
 plan_wrong 4 "scale: missing" -e '/^  "scale"/d'
 plan_wrong 4 "line [0-9]*: malformed" -e '40q'
@@ -119,7 +119,7 @@ done
 expect 2 "not a setting of plans" ./adcgs-enc "$scene" --plan "$dir/x.json" --size 10k
 expect 2 "number of a segment" ./adcgs-enc "$scene" --plan "$plan" --segment 0.5
 expect 2 "plan.json has 3" ./adcgs-enc "$scene" --plan "$plan" --segment 4
-expect 2 "give --plan" ./adcgs-enc "$scene" -o "$dir/x" --cut 1
+expect 2 "needs --plan" ./adcgs-enc "$scene" -o "$dir/x" --cut 1
 
 # Two runs do not train the same segment. A run takes over the claim of a run that has ended or died.
 claim=$dir/plan.3.claim

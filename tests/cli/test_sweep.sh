@@ -293,7 +293,7 @@ refused 3 "nowhere/sweep.json: " "$dir/nowhere"
 doctored ".*malformed JSON" '$d'
 doctored "empty, expected JSON" d
 doctored "a sweep of the scene other, not of scene" 's,/scene",/other",'
-doctored "no scene" '/"scene"/d'
+doctored "expected the scene's name" '/"scene"/d'
 doctored "no curve" 's/"curves"/"stages"/'
 doctored "no curve" 's/"yardstick": false/"yardstick": true/'
 doctored 'bytes\[0\].mean: -1, expected' 's/"mean": 80000/"mean": -1/'
