@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
 # Robustness of the default: make -C build robust. Each scene of doc/robust.list is encoded by default, then once without each
 # mechanism; one thread a run. All figures are those of decoded files on test views (adcgs-eval). Writes robust.md: PSNR, bytes
-# and CPU seconds of every run, and the gain in dB by turning each mechanism off, in bold where it is more than MARGIN. Exits with
-# 1 if any gain is bold, or if a run fails. Results are kept, so that it resumes: one folder for each version of adcgs-enc and
+# and CPU seconds of every run, and the gain in dB by turning each mechanism off, in bold where it is more than MARGIN. A gain is
+# the difference of PSNR at equal bytes: RATE dB are taken off for each doubling of the bytes. Exits with 1 if any gain is bold,
+# or if a run fails. Results are kept, so that it resumes: one folder for each version of adcgs-enc and
 # number of iterations.
 #   ROBUST      folder of these folders (default robust)
 #   VERSION     name of the version (default the checksum of adcgs-enc)
@@ -14,6 +15,7 @@
 #   SEEDS       default 1; figures are means over them
 #   JOBS        runs at once, at most 2 (default 1)
 #   MARGIN      dB (default 0.3)
+#   RATE        dB per doubling of bytes (default 1.4, the least of the rate curves of four scenes in doc/results.md)
 #   ROBUST_LIST another list
 #   ADCGS_DATA  folder of data sets (default ../shared/data next to the sources)
 set -eu
@@ -106,19 +108,24 @@ figures()
 # tables: makes tables from figures; the last line is the number of marked cells and of all cells.
 tables()
 {
-    awk -v margin="${MARGIN:-0.3}" '
+    awk -v margin="${MARGIN:-0.3}" -v rate="${RATE:-1.4}" '
         !($1 in seen) { seen[$1] = 1; scenes[++n] = $1 }
         !($2 in known) { known[$2] = 1; mechanisms[++m] = $2 }
         $4 != "-" { count[$1, $2]++; psnr[$1, $2] += $4; bytes[$1, $2] += $5; seconds[$1, $2] += $6 }
         $4 == "-" { missing[$1, $2] = 1 }
-        function gain(s, k) { return psnr[s, k] / count[s, k] - psnr[s, "default"] / count[s, "default"] }
+        function mean(sum, s, k) { return sum[s, k] / count[s, k] }
+        function gain(s, k,  doublings) {
+            doublings = log(mean(bytes, s, k) / mean(bytes, s, "default")) / log(2)
+            return mean(psnr, s, k) - mean(psnr, s, "default") - rate * doublings
+        }
         function cell(s, k,  text) {
             if (!count[s, k] || !count[s, "default"]) return missing[s, k] ? "no switch" : ""
             text = sprintf("%+.2f", gain(s, k))
             return gain(s, k) > margin ? "**" text "**" : text
         }
         END {
-            print "PSNR in dB that each scene gains by turning a mechanism off; **bold** where that is more than " margin ".\n"
+            print "PSNR in dB that each scene gains at equal bytes (" rate " dB per doubling) by turning a mechanism off;"
+            print "**bold** where that is more than " margin ".\n"
             line = "| Scene | Default"; rule = "|---|---"
             for (j = 2; j <= m; j++) { line = line " | " mechanisms[j]; rule = rule "|---" }
             print line " |\n" rule "|"
@@ -128,7 +135,7 @@ tables()
                 for (j = 2; j <= m; j++) line = line " | " cell(s, mechanisms[j])
                 print line " |"
             }
-            print "\n| Scene | Off | PSNR, dB | Difference | Bytes | CPU, s |\n|---|---|---|---|---|---|"
+            print "\n| Scene | Off | PSNR, dB | Gain | Bytes | CPU, s |\n|---|---|---|---|---|---|"
             for (i = 1; i <= n; i++) for (j = 1; j <= m; j++) {
                 s = scenes[i]; k = mechanisms[j]
                 if (count[s, k])

@@ -134,7 +134,7 @@ adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, co
         status = adcgs_enc_part_load(&then, name, cpu, pool, found, error);
     const char *const what = status == ADCGS_OK && *found ? difference(&now, &then) : NULL;
     if (what)
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: belongs to another run: its %s differs: remove it, or name another "
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: belongs to another run (different %s): remove it, or name another "
                                                    "output", name, what);
     adcgs_stream_clear(&now, NULL);
     adcgs_stream_clear(&then, NULL);

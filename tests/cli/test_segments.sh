@@ -56,7 +56,7 @@ expect 0 "segment 1 is lost" ./adcgs-dec "$dir/hurt.adcgs" --conceal --md5
 expect 2 "needs a file" ./adcgs-dec - --conceal --md5
 expect 0 "" ./adcgs-info --check "$dir/two.adcgs"
 ./adcgs-info --repair "$dir/saved.adcgs" "$dir/hurt.adcgs" >"$dir/out"
-[ $? -eq 1 ] && grep -q 'segment 1 is lost' "$dir/out" && grep -q '2 faults; 1 segment can' "$dir/out" ||
+[ $? -eq 1 ] && grep -q 'segment 1 is lost' "$dir/out" && grep -q '2 faults; 1 segment usable' "$dir/out" ||
     { bad "report of --repair"; cat "$dir/out"; }
 [ "$(spans saved.adcgs)" = "0 0 0.1" ] || bad "the repaired stream is not the first segment"
 expect 0 "" ./adcgs-info --check "$dir/saved.adcgs"
@@ -122,10 +122,10 @@ resume="./adcgs-enc $scene -o $dir/x.adcgs --segment 0.1 --resume $dir/base"
 cp "$dir/first" "$dir/base.1.adcgs"
 # shellcheck disable=SC2086
 {
-    expect 4 "base.1.adcgs: belongs to another run: its seed differs" $resume $short --seed 2
-    expect 4 "its settings is another" $resume $short --k 3
-    expect 4 "its time is another" $resume $short --segment 0.07
-    expect 4 "its iterations is another" $resume $short --iterations 400
+    expect 4 "base.1.adcgs: belongs to another run (different seed)" $resume $short --seed 2
+    expect 4 "another run (different settings)" $resume $short --k 3
+    expect 4 "another run (different time)" $resume $short --segment 0.07
+    expect 4 "another run (different iterations)" $resume $short --iterations 400
 }
 head -c 500 "$dir/first" >"$dir/base.1.adcgs"
 # shellcheck disable=SC2086
