@@ -48,5 +48,6 @@ adcgs_status adcgs_chart_draw(const adcgs_sweep *sweep, const char *name, int *d
     *drawn = code == 0;
     if (code == 0 || code == MISSING)
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s/%s.svg: cannot be made: gnuplot failed, see %s.gp.log", sweep->directory, name, name);
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s/%s.svg: cannot be made: gnuplot failed, see %s.gp.log", sweep->directory, name,
+                      name);
 }

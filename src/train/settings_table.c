@@ -166,7 +166,7 @@ const adcgs_setting adcgs_settings[] = {
     MOMENT(noise_from, B | Q, 2, BUT_PAPER(0.25, 0.125), "fraction of training from which noise stands for rounding"),
     MOMENT(rate_from, B | Q, 2, BUT_PAPER(0.3, 0.125), "fraction of training from which the features' bits count in the loss"),
     ROW("scale_from", scale_from, AT(own_scale_from), MOMENTS, ALWAYS, S | Q, 0, 2, ALL(0.3),
-        "fraction of training from which the scale regulariser counts; by default 0 if several views share a timestamp"),
+        "fraction of training from which the scale regulariser counts; 0 in dynamic scenes if several views share a timestamp"),
     MOMENT(fine_from, S | Q, 2, BUT_PAPER(0.35, 0.1), "fraction of training from which the fine deformation is applied"),
     MOMENT(prune_units_at, S | B | Q, 2, BUT_PAPER(0.52, 2),
            "fraction of training at which hidden units not worth their bits are pruned, and networks' bits begin to count"),

@@ -144,7 +144,8 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
     const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
     if (several && !c->own_rigid)
         c->rigid_weight = 0;
-    if (several && !c->own_scale_from)
+    /* In static scenes that cameras filmed from inside, small primitives leave holes early in training, which then stay. */
+    if (several && times > 1 && !c->own_scale_from)
         c->scale_from = 0;
     if (!several && times > 1 && !c->own_square)
         c->square_weight = fminf(c->square_weight, SQUARE_ALONE);

@@ -13,7 +13,7 @@ made one tiny --size 24x24 --moments 4
 made two tiny --size 16x16 --moments 2 // --set tiers=1
 data nowhere no-such-folder
 END
-export ROBUST=$dir/robust ROBUST_LIST=$dir/list VERSION=test ITERATIONS=10 TRIALS=0 ADCGS_DATA=$dir
+export ROBUST=$dir/robust ROBUST_LIST=$dir/list VERSION=test ITERATIONS=10 TRIALS=0 RATE=0 ADCGS_DATA=$dir
 robust() { sh "${srcdir:-.}/doc/robust.sh" >"$dir/out" 2>"$dir/err"; }
 
 # By default a run has ten iterations, with the planted option forty.
@@ -34,6 +34,10 @@ robust
 cmp -s "$table" "$dir/before" && ! grep -q '^robust: one' "$dir/err" || bad "it does not resume"
 SCENES=two MECHANISMS=nothing robust || { bad "a part without the planted loss"; cat "$dir/out" "$dir/err"; }
 grep -q '^0 of 1 cells' "$table" && ! grep -q planted "$table" || bad "not only the selected part"
+
+# Gains are those at equal bytes: the planted option costs some.
+RATE=100 robust
+cmp -s "$table" "$dir/before" && bad "bytes do not count"
 
 # A failed run is reported, and fails.
 echo 'without wrong --set stereo=-1' >>"$dir/list"
