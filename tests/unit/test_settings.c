@@ -181,7 +181,7 @@ static void targets_are_checked(void **state)
     expect_refused(adcgs_train_check(&c, &error), "need");
     c.without_rate = 0;
     assert_int_equal(adcgs_train_set(&c, "lambda=1", &error), ADCGS_OK);
-    expect_refused(adcgs_train_check(&c, &error), "lambda=1 and a size or PSNR");
+    expect_refused(adcgs_train_check(&c, &error), "lambda=1 and a target size or PSNR");
 }
 
 /** The printed changes of a configuration reproduce it. */
