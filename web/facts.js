@@ -44,7 +44,7 @@ function showFacts(into, name, facts, notes) {
     rowOf(table, 'file', name);
     rowOf(table, 'stream', `${facts.version}, level ${facts.level}`);
     rowOf(table, 'time', `${seconds(facts.time_start)} to ${seconds(facts.time_end)} s, ${seconds(facts.frame_rate)} frames/s`);
-    const promised = facts.segments_promised > facts.segments ? ` of ${facts.segments_promised}` : '';
+    const promised = facts.segments_total > facts.segments ? ` of ${facts.segments_total}` : '';
     rowOf(table, 'segments', `${facts.segments}${promised}`);
     rowOf(table, 'anchors', `${grouped(facts.anchors)} (${grouped(facts.static_anchors)} static)`);
     rowOf(table, 'splats', grouped(facts.gaussians));

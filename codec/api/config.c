@@ -66,14 +66,14 @@ static void tell_of_push(const adcgs_decoder *d, adcgs_info *info)
     adcgs_push_progress p;
     adcgs_push_tell(d->push, &p);
     info->segments = (int)p.segments;
-    info->segments_promised = (int)p.promised;
+    info->segments_total = (int)p.total;
     info->time_start = seconds_of(&d->stream, p.start);
-    info->time_final = seconds_of(&d->stream, p.final);
-    info->tiers_coming = p.tiers_drawable;
+    info->time_committed = seconds_of(&d->stream, p.committed);
+    info->tiers_received = p.tiers_received;
     info->tiers = ADCGS_MAX(info->tiers, p.tiers);
     if (p.is_over && p.segments > 0)
         return;
-    info->time_drawable = seconds_of(&d->stream, p.drawable);
+    info->time_available = seconds_of(&d->stream, p.available);
     info->time_end = seconds_of(&d->stream, p.end);
     info->bytes.total = p.bytes;
 }
@@ -91,10 +91,10 @@ adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size
     memset(&own, 0, sizeof own); /* padding, too */
     adcgs_stream_info(&decoder->stream, &own);
     own.faults = (int)ADCGS_MIN(decoder->faults, (uint32_t)INT32_MAX);
-    own.time_final = INFINITY;
+    own.time_committed = INFINITY;
     if (decoder->seek)
         tell_of_demand(decoder, &own);
-    own.time_drawable = own.time_end;
+    own.time_available = own.time_end;
     if (decoder->push)
         tell_of_push(decoder, &own);
     own.size = ADCGS_MIN(size, sizeof own);

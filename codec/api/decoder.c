@@ -70,7 +70,7 @@ static adcgs_status open_stream(adcgs_decoder *d, origin *from, const adcgs_read
         return ADCGS_OK;
     const adcgs_read_fn read = from->read_at ? read_in_order : from->read;
     void *const user = from->read_at ? from : from->user;
-    return options->join ? adcgs_push_read(&d->stream, read, user, options, error) :
+    return options->tune_in ? adcgs_push_read(&d->stream, read, user, options, error) :
                            adcgs_stream_read(&d->stream, read, user, options, NULL, NULL, error);
 }
 
@@ -93,7 +93,7 @@ static adcgs_status open_decoder(adcgs_decoder *d, origin *from, const adcgs_con
         .layers = config->layers,
         .strict_end = config->strict_end,
         .conceal = config->conceal != 0 && from && from->read_at,
-        .join = config->join != 0,
+        .tune_in = config->tune_in != 0,
     };
     if (!from) {
         adcgs_stream_init(&d->stream);
@@ -189,7 +189,7 @@ adcgs_status adcgs_push(adcgs_decoder *decoder, const void *data, size_t bytes, 
     return status;
 }
 
-adcgs_status adcgs_push_forget(adcgs_decoder *decoder, double time, adcgs_error *error)
+adcgs_status adcgs_push_discard_before(adcgs_decoder *decoder, double time, adcgs_error *error)
 {
     uint32_t n = 0;
     ADCGS_OWN_ERROR(error);

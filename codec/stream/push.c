@@ -191,7 +191,7 @@ static void note_start(adcgs_push_reader *p, int64_t end_before)
 static adcgs_status use_held(adcgs_push_reader *p, adcgs_arrival *arrived)
 {
     int truncated, use = 1;
-    if (!p->has_signature && p->options.join && memcmp(p->held, ADCGS_SIGNATURE, ADCGS_SIGNATURE_BYTES) != 0) {
+    if (!p->has_signature && p->options.tune_in && memcmp(p->held, ADCGS_SIGNATURE, ADCGS_SIGNATURE_BYTES) != 0) {
         p->has_signature = 1;
         p->search = SEARCH_HEAD;
     }
@@ -320,7 +320,7 @@ int adcgs_push_has_head(const adcgs_push_reader *p)
 }
 
 /** The tick before which no further byte can change any content. */
-static int64_t final_tick(const adcgs_push_reader *p)
+static int64_t committed_tick(const adcgs_push_reader *p)
 {
     const adcgs_stream_reader *r = &p->reader;
     if (p->is_over || p->error.status != ADCGS_OK || r->indexed)
@@ -331,7 +331,7 @@ static int64_t final_tick(const adcgs_push_reader *p)
 }
 
 /** End of the content that can be rendered. */
-static int64_t drawable_tick(const adcgs_push_reader *p)
+static int64_t available_tick(const adcgs_push_reader *p)
 {
     const adcgs_segment *s = &p->reader.segment;
     if (adcgs_segment_is_drawable(s))
@@ -351,12 +351,12 @@ void adcgs_push_tell(const adcgs_push_reader *p, adcgs_push_progress *out)
         .bytes = r->source.pos + p->n,
         .start = p->has_start ? p->start : s->start_ticks,
         .end = s->duration_ticks >= 0 ? s->start_ticks + s->duration_ticks : INT64_MAX,
-        .final = final_tick(p),
-        .drawable = drawable_tick(p),
+        .committed = committed_tick(p),
+        .available = available_tick(p),
         .segments = adcgs_stream_reader_segments(r),
-        .promised = r->head.segments,
+        .total = r->head.segments,
         .tiers = has_segment ? r->segment.model.finest + 1 : 0,
-        .tiers_drawable = has_segment ? adcgs_segment_tiers(&r->segment) : 0,
+        .tiers_received = has_segment ? adcgs_segment_tiers(&r->segment) : 0,
     };
 }
 

@@ -3,7 +3,7 @@
  * A stream whose bytes arrive over time, in pieces of any size. Each chunk is used when its last byte has arrived. The part of a
  * segment that is decoded by then can be inspected. The final result equals that of reading in order.
  *
- * With options->join the beginning may be missing. Bytes that are no signature are skipped up to the next HEAD, and the chunks
+ * With options->tune_in the beginning may be missing. Bytes that are no signature are skipped up to the next HEAD, and the chunks
  * after it up to the next key. stream->first_segment is then the number of that segment.
  */
 #ifndef ADCGS_STREAM_PUSH_H
@@ -40,11 +40,11 @@ typedef struct adcgs_push_progress {
     uint64_t bytes;
     int64_t start;          /**< tick at which the first segment begins; before it has begun, the value in HEAD */
     int64_t end;            /**< tick, from HEAD; INT64_MAX: not given */
-    int64_t final;          /**< tick before which content no longer changes; INT64_MIN: all may, INT64_MAX: nothing will */
-    int64_t drawable;       /**< tick at which the renderable content ends; INT64_MIN: none */
+    int64_t committed;      /**< tick before which content no longer changes; INT64_MIN: all may, INT64_MAX: nothing will */
+    int64_t available;      /**< tick at which the renderable content ends; INT64_MIN: none */
     uint32_t segments;      /**< complete segments, including those freed */
-    uint32_t promised;      /**< from HEAD; 0: not given */
-    int tiers, tiers_drawable; /**< of the segment being received; 0: none */
+    uint32_t total;         /**< from HEAD; 0: not given */
+    int tiers, tiers_received; /**< of the segment being received; 0: none */
 } adcgs_push_progress;
 /** Only after HEAD has been received. */
 void adcgs_push_tell(const adcgs_push_reader *reader, adcgs_push_progress *progress);

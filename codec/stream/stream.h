@@ -70,7 +70,7 @@ typedef struct adcgs_read_options {
     int layers;            /**< 1..5, 0: all */
     int strict_end;
     int conceal;           /**< slices after a damaged one are treated as missing */
-    int join;              /**< tune in: if the beginning is missing, start at the next HEAD (push.h) */
+    int tune_in;           /**< if the beginning is missing, start at the next HEAD (push.h) */
 } adcgs_read_options;
 
 /** Called for each line of the trace (spec "Trace"), in the caller's thread: absolute bit position, name, value as text. */

@@ -39,7 +39,7 @@ PROTOTYPES = {
     "adcgs_pool_threads": (c_int, [c_void_p]),
     "adcgs_push": (c_int, [_decoder, c_void_p, c_size_t, POINTER(c_size_t), POINTER(c_int), _error]),
     "adcgs_push_end": (c_int, [_decoder, _error]),
-    "adcgs_push_forget": (c_int, [_decoder, c_double, _error]),
+    "adcgs_push_discard_before": (c_int, [_decoder, c_double, _error]),
     "adcgs_render": (c_int, [_decoder, _camera, c_double, POINTER(s.adcgs_frame), _error]),
     "adcgs_render_depth": (c_int, [_decoder, _camera, c_double, c_void_p, c_void_p, _error]),
     "adcgs_render_rgba8": (c_int, [_decoder, _camera, c_double, c_int, c_void_p, c_ssize_t, _error]),

@@ -20,7 +20,7 @@ class adcgs_error(Structure):
 class adcgs_config(Structure):
     _fields_ = [("size", c_size_t), ("threads", c_int), ("cpu", c_int), ("layers", c_int), ("memory_limit", c_uint64),
                 ("strict_end", c_int), ("pool", c_void_p), ("log", LOG_FN), ("log_user", c_void_p), ("conceal", c_int),
-                ("on_demand", c_int), ("join", c_int)]
+                ("on_demand", c_int), ("tune_in", c_int)]
 
 
 class adcgs_bytes(Structure):
@@ -35,8 +35,8 @@ class adcgs_info(Structure):
                 ("time_end", c_double), ("frame_rate", c_double), ("scene_origin", c_double * 3), ("scene_scale", c_double),
                 ("background", c_float * 3), ("truncated", c_int), ("colour", c_char * 32), ("axes", c_char * 32),
                 ("units", c_char * 32), ("bytes", adcgs_bytes), ("metadata", c_int), ("faults", c_int), ("tiers", c_int),
-                ("tiers_present", c_int), ("time_final", c_double), ("time_drawable", c_double), ("segments_promised", c_int),
-                ("tiers_coming", c_int), ("first_segment", c_int)]
+                ("tiers_present", c_int), ("time_committed", c_double), ("time_available", c_double), ("segments_total", c_int),
+                ("tiers_received", c_int), ("first_segment", c_int)]
 
 
 class adcgs_camera(Structure):

@@ -53,13 +53,13 @@ def _plain(value):
     return tuple(value) if isinstance(value, ctypes.Array) else value
 
 
-def _make_config(threads, cpu, layers, memory_limit, strict, conceal, on_demand, join, pool, log):
+def _make_config(threads, cpu, layers, memory_limit, strict, conceal, on_demand, tune_in, pool, log):
     config = s.adcgs_config()
     lib.adcgs_config_init(ctypes.byref(config), ctypes.sizeof(config))
     if cpu not in s.CPU_LEVELS:
         raise ValueError(f"cpu: {cpu}: expected one of {', '.join(s.CPU_LEVELS)}")
     config.threads, config.cpu, config.layers, config.memory_limit = threads, s.CPU_LEVELS.index(cpu), layers, memory_limit
-    config.strict_end, config.conceal, config.on_demand, config.join = strict, conceal, on_demand, join
+    config.strict_end, config.conceal, config.on_demand, config.tune_in = strict, conceal, on_demand, tune_in
     if pool is not None:
         config.pool = pool._handle
     if log is not None:
@@ -264,13 +264,13 @@ class PushDecoder(Decoder):
         """Declare that no more bytes will come. If the stream has not ended, its complete part remains."""
         self._call(lib.adcgs_push_end)
 
-    def forget(self, time):
+    def discard_before(self, time):
         """Declare that no time before this one, in seconds, will be requested again: past segments are freed."""
-        self._call(lib.adcgs_push_forget, time)
+        self._call(lib.adcgs_push_discard_before, time)
 
 
 def open(source, *, threads=0, cpu="auto", layers=0, tiers=0, memory_limit=0, strict=False, conceal=False, on_demand=False,
-         join=False, pool=None, log=None):
+         tune_in=False, pool=None, log=None):
     """Open a stream: a file's name, bytes, or an object with read(), which is read to the stream's end. Returns a Decoder.
 
     threads       1 to 256; 0: one for each processor
@@ -281,11 +281,11 @@ def open(source, *, threads=0, cpu="auto", layers=0, tiers=0, memory_limit=0, st
     strict        refuse a stream that ends early; by default its complete part can be shown
     conceal       use the intact parts of a damaged stream, and report the damage to log
     on_demand     read a segment when a time in it is requested; an object with read() then needs seek()
-    join          tune in: the beginning may be missing, for an object with read()
+    tune_in       the beginning may be missing, for an object with read()
     pool          a Pool to use instead of threads of its own
     log           log(level, text) receives messages; level is "warning" or "info"
     """
-    config = _make_config(threads, cpu, layers, memory_limit, strict, conceal, on_demand, join, pool, log)
+    config = _make_config(threads, cpu, layers, memory_limit, strict, conceal, on_demand, tune_in, pool, log)
     decoder = Decoder(config, pool)
     decoder._source = open_source(decoder._handle, source, config)
     if tiers:
@@ -293,9 +293,9 @@ def open(source, *, threads=0, cpu="auto", layers=0, tiers=0, memory_limit=0, st
     return decoder
 
 
-def open_push(*, threads=0, cpu="auto", layers=0, memory_limit=0, strict=False, join=False, pool=None, log=None):
+def open_push(*, threads=0, cpu="auto", layers=0, memory_limit=0, strict=False, tune_in=False, pool=None, log=None):
     """Open a PushDecoder; the arguments are those of open()."""
-    decoder = PushDecoder(_make_config(threads, cpu, layers, memory_limit, strict, False, False, join, pool, log), pool)
+    decoder = PushDecoder(_make_config(threads, cpu, layers, memory_limit, strict, False, False, tune_in, pool, log), pool)
     call(lib.adcgs_open_push, ctypes.byref(decoder._handle), ctypes.byref(decoder._config))
     return decoder
 

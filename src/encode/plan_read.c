@@ -190,7 +190,7 @@ static adcgs_status read_segment(const adcgs_json_place *at, adcgs_plan *p)
     ADCGS_TRY(get_real(at, "end", begin, SECONDS_MAX, &to[i + 1]));
     if (!(to[i + 1] > begin))
         return BAD(at, "end", "%.9g, expected a time after its beginning", to[i + 1]);
-    ADCGS_TRY(get_real(at, "reach", 0, i + 1 < p->cuts.n ? SECONDS_MAX : 0, &p->cuts.reach[i]));
+    ADCGS_TRY(get_real(at, "crossfade", 0, i + 1 < p->cuts.n ? SECONDS_MAX : 0, &p->cuts.reach[i]));
     ADCGS_TRY(get_whole(at, "follows", 0, i, &before));
     if (before && before != i)
         return BAD(at, "follows", "%u, expected 0 or %u, the previous segment", before, i);

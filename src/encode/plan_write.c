@@ -138,7 +138,7 @@ static adcgs_status put_segment(adcgs_json *j, const adcgs_plan *p, const adcgs_
     adcgs_json_open(j, NULL, '{');
     adcgs_json_real(j, "begin", p->cuts.at[i]);
     adcgs_json_real(j, "end", p->cuts.at[i + 1]);
-    adcgs_json_real(j, "reach", p->cuts.reach[i]);
+    adcgs_json_real(j, "crossfade", p->cuts.reach[i]);
     adcgs_json_int(j, "follows", p->segments[i].follows ? i : 0);
     adcgs_json_int(j, "views", part.n_views[ADCGS_SPLIT_TRAIN]);
     adcgs_json_real(j, "cost", round(10 * adcgs_plan_cost(&p->config, &part)) / 10);

@@ -72,7 +72,7 @@ static void look(adcgs_intake *in)
 {
     adcgs_info *const info = &in->come.info;
     if (adcgs_get_info(in->decoder, info, sizeof *info, NULL) == ADCGS_OK)
-        in->come.drawable = info->time_drawable > -INFINITY;
+        in->come.drawable = info->time_available > -INFINITY;
 }
 
 /** Decodes one more part. \return nonzero if the rendered result differs */

@@ -37,11 +37,11 @@ static void describe(adcgs_player *p)
     const adcgs_info *const info = &p->come.info;
     const double bytes = (double)p->come.bytes;
     char segment[60] = "", tier[60] = "";
-    const int number = info->segments + (info->tiers_coming > 0);
-    if (info->segments_promised > 1)
-        snprintf(segment, sizeof segment, "segment %d of %d, ", number, info->segments_promised);
-    if (info->tiers_coming)
-        snprintf(tier, sizeof tier, "tier %d of %d, ", info->tiers_coming, info->tiers);
+    const int number = info->segments + (info->tiers_received > 0);
+    if (info->segments_total > 1)
+        snprintf(segment, sizeof segment, "segment %d of %d, ", number, info->segments_total);
+    if (info->tiers_received)
+        snprintf(tier, sizeof tier, "tier %d of %d, ", info->tiers_received, info->tiers);
     snprintf(p->figures.coming, sizeof p->figures.coming, "%s%s%.*f %s", segment, tier, bytes < 1e6 ? 0 : 1,
              bytes / (bytes < 1e6 ? 1e3 : 1e6), bytes < 1e6 ? "KB" : "MB");
 }
@@ -54,8 +54,8 @@ static void set_span(adcgs_player *p)
     const int promised = isfinite(info->time_end) && p->come.fault.status == ADCGS_OK;
     if (!p->settings->is_span)
         adcgs_play_clock_span(clock, info->time_start,
-                              promised ? info->time_end : ADCGS_MAX(info->time_drawable, info->time_start));
-    clock->reach = p->come.over ? INFINITY : info->time_drawable - clock->begin;
+                              promised ? info->time_end : ADCGS_MAX(info->time_available, info->time_start));
+    clock->reach = p->come.over ? INFINITY : info->time_available - clock->begin;
 }
 
 static void take_come(adcgs_player *p, const adcgs_come *come)

@@ -60,7 +60,7 @@ static outcome wait_stream(const adcgs_player *p, const adcgs_script_line *line)
 {
     const adcgs_come *const come = &p->come;
     const double there = line->kind == ADCGS_SCRIPT_WAIT_BYTES      ? (double)come->bytes
-                         : line->kind == ADCGS_SCRIPT_WAIT_TIERS    ? come->info.tiers_coming
+                         : line->kind == ADCGS_SCRIPT_WAIT_TIERS    ? come->info.tiers_received
                          : line->kind == ADCGS_SCRIPT_WAIT_SEGMENTS ? come->info.segments
                                                                     : -1.0; /* the end */
     return come->over || there >= line->number[0] ? DONE : AGAIN;

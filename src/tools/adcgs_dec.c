@@ -240,7 +240,7 @@ static adcgs_status show_live(const adcgs_cli *cli, const settings *s, adcgs_dec
 {
     adcgs_live live;
     adcgs_config config = s->config;
-    config.join = !adcgs_is_url(s->input);
+    config.tune_in = !adcgs_is_url(s->input);
     adcgs_status status = adcgs_live_open(&live, decoder, s->input, &config, &s->request, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = adcgs_dec_tell_joined(cli, *decoder, live.in.name, error);

@@ -45,7 +45,7 @@ static adcgs_info look(const adcgs_live *live)
 {
     adcgs_info info;
     if (adcgs_get_info(live->decoder, &info, sizeof info, NULL) != ADCGS_OK)
-        info = (adcgs_info){.time_final = -INFINITY, .time_drawable = -INFINITY};
+        info = (adcgs_info){.time_committed = -INFINITY, .time_available = -INFINITY};
     return info;
 }
 
@@ -70,17 +70,17 @@ adcgs_status adcgs_live_open(adcgs_live *live, adcgs_decoder **decoder, const ch
     live->buffer = malloc(BUFFER_BYTES);
     if (!live->buffer)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", live->in.name);
-    adcgs_info info = {.time_drawable = -INFINITY};
-    for (; !live->over && isinf(info.time_drawable) && !adcgs_interrupted(); info = look(live))
+    adcgs_info info = {.time_available = -INFINITY};
+    for (; !live->over && isinf(info.time_available) && !adcgs_interrupted(); info = look(live))
         ADCGS_TRY(step(live, error));
     return are_known(&info, request) ? ADCGS_OK : adcgs_live_wait(live, INFINITY, error);
 }
 
 adcgs_status adcgs_live_wait(adcgs_live *live, double time, adcgs_error *error)
 {
-    while (!live->over && !adcgs_interrupted() && (isinf(time) || !(time < look(live).time_final)))
+    while (!live->over && !adcgs_interrupted() && (isinf(time) || !(time < look(live).time_committed)))
         ADCGS_TRY(step(live, error));
-    return live->over ? ADCGS_OK : adcgs_push_forget(live->decoder, time, error);
+    return live->over ? ADCGS_OK : adcgs_push_discard_before(live->decoder, time, error);
 }
 
 void adcgs_live_close(adcgs_live *live)

@@ -79,7 +79,7 @@ adcgs_status adcgs_dec_tell_joined(const adcgs_cli *cli, const adcgs_decoder *de
 static adcgs_status open_pipe(adcgs_decoder **decoder, const adcgs_dec_open_config *how, adcgs_error *error)
 {
     adcgs_config config = *how->config;
-    config.join = how->budget->of != ADCGS_BUDGET_BYTES;
+    config.tune_in = how->budget->of != ADCGS_BUDGET_BYTES;
     const adcgs_dec_open_config joining = {.cli = how->cli, .budget = how->budget, .config = &config};
     const adcgs_status status = open_in_order(decoder, adcgs_file_read, stdin, &joining, error);
     if (status != ADCGS_OK)

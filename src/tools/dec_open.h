@@ -21,7 +21,7 @@ typedef struct adcgs_dec_open_config {
 adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_http **http, const char *input, const adcgs_dec_open_config *how,
                             adcgs_error *error);
 
-/** Prints a remark if the decoder tuned in after the stream's beginning (config.join). */
+/** Prints a remark if the decoder tuned in after the stream's beginning (config.tune_in). */
 adcgs_status adcgs_dec_tell_joined(const adcgs_cli *cli, const adcgs_decoder *decoder, const char *name, adcgs_error *error);
 
 #endif

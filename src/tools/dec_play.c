@@ -131,7 +131,7 @@ static adcgs_status play_file(const adcgs_dec_play *how, adcgs_play_settings *se
 /** Plays from the first bytes, or, if a pipe's first bytes are missing, from the next key. */
 static adcgs_status play_coming(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
 {
-    settings->config.join = !adcgs_is_url(how->input);
+    settings->config.tune_in = !adcgs_is_url(how->input);
     ADCGS_TRY(adcgs_feed_open(&settings->source.feed, how->input, adcgs_interrupted, error));
     const adcgs_status status = play(how, settings, failed, error);
     adcgs_feed_free(&settings->source.feed);

@@ -61,7 +61,7 @@ static adcgs_status json_segments(adcgs_json *j, const adcgs_info_report *r, adc
         adcgs_json_open(j, NULL, '{');
         adcgs_json_real(j, "time_start", m->time_start);
         adcgs_json_real(j, "time_end", m->time_end);
-        adcgs_json_real(j, "reach", m->reach);
+        adcgs_json_real(j, "crossfade", m->reach);
         adcgs_json_int(j, "anchors", m->n);
         adcgs_json_int(j, "gaussians", adcgs_info_count_gaussians(m));
         adcgs_json_int(j, "depth", m->depth);

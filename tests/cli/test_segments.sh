@@ -147,7 +147,7 @@ reach() { ./adcgs-info "$dir/$1.adcgs" | sed -n 's/^  crossfade of \(.*\) s into
 fade faded --fade 0.07
 [ "$(reach faded)" = 0.0666667 ] || bad "reaches $(reach faded)"
 ./adcgs-info --json "$dir/faded.adcgs" >"$dir/out"
-[ "$(grep -c '"reach": 0.0[67]' "$dir/out")" -eq 1 ] && [ "$(grep -c '"reach": 0,' "$dir/out")" -eq 1 ] || { bad "JSON"; cat "$dir/out"; }
+[ "$(grep -c '"crossfade": 0.0[67]' "$dir/out")" -eq 1 ] && [ "$(grep -c '"crossfade": 0,' "$dir/out")" -eq 1 ] || { bad "JSON"; cat "$dir/out"; }
 fade meets --fade 0
 [ "$(reach meets)" = "" ] || bad "reaches $(reach meets)"
 at=$(./adcgs-info --json "$dir/faded.adcgs" | sed -n 's/.*"time_start": \(0.[0-9]*\),/\1/p' | tail -n 1)

@@ -105,7 +105,7 @@ static double any_time(script *s, const adcgs_info *info)
 {
     const uint32_t kind = draw(s) % 10;
     const double end = isfinite(info->time_end) ? info->time_end : info->time_start + 1;
-    const double odd[] = { NAN, INFINITY, -INFINITY, 1e300, info->time_final };
+    const double odd[] = { NAN, INFINITY, -INFINITY, 1e300, info->time_committed };
     return kind < ADCGS_COUNTOF(odd) ? odd[kind] : info->time_start + draw(s) / 255.0 * (end - info->time_start);
 }
 
@@ -189,7 +189,7 @@ static adcgs_status ask_one(patient *p, script *s, uint32_t kind)
     else if (kind == 6)
         status = adcgs_set_tiers(p->d, (int)(draw(s) % 10) - 1, &error);
     else if (p->is_pushed)
-        status = adcgs_push_forget(p->d, time, &error);
+        status = adcgs_push_discard_before(p->d, time, &error);
     check(status, &error);
     return status;
 }
@@ -226,7 +226,7 @@ static void configure(adcgs_config *config, script *s)
     config->threads = 1;
     config->cpu = kind & 1 ? ADCGS_CPU_SCALAR : ADCGS_CPU_AUTO;
     config->layers = kind & 2 ? (int)(kind >> 2) % 6 : 0;
-    config->join = (kind & 0xc0) == 0x40;
+    config->tune_in = (kind & 0xc0) == 0x40;
     config->strict_end = (kind & 0xc0) == 0x80;
     config->memory_limit = memory & 1 ? (uint64_t)(memory + 1) << 13 : MEMORY_MOST;
 }
@@ -266,7 +266,7 @@ static void push_both(const uint8_t *data, size_t size, script *s)
         adcgs_config config;
         configure(&config, s);
         config.pool = pool;
-        const size_t skipped = config.join ? size * draw(s) / 256 : 0;
+        const size_t skipped = config.tune_in ? size * draw(s) / 256 : 0;
         ways[i] = (way){ .p = { .is_pushed = 1, .segments = -1 }, .data = data + skipped, .left = size - skipped };
         FUZZ_REQUIRE(adcgs_open_push(&ways[i].p.d, &config, NULL) == ADCGS_OK);
     }
@@ -354,7 +354,7 @@ static void seek(const uint8_t *data, size_t size, script *s)
     for (int i = 0; p.d && i < 6; i++)
         ask(&p, s);
     from.faults = 0;
-    if (p.d && faults & OPENS_WELL && !(faults & CHANGES) && config.memory_limit == MEMORY_MOST && !config.join)
+    if (p.d && faults & OPENS_WELL && !(faults & CHANGES) && config.memory_limit == MEMORY_MOST && !config.tune_in)
         compare(&p, &from, &config);
     if (p.d)
         ask_all(&p, s);

@@ -167,7 +167,8 @@ static void push(const uint8_t *data, size_t size, const adcgs_config *config, s
         adcgs_arrival arrived;
         status = adcgs_push(d, data + at, ADCGS_MIN(step, size - at), &used, &arrived, NULL);
         if (arrived == ADCGS_ARRIVED_SEGMENT && forgets)
-            FUZZ_REQUIRE(adcgs_push_forget(d, 1e9, NULL) == ADCGS_OK && adcgs_get_splat_digest(d, 1e9, digest, NULL) == ADCGS_OK);
+            FUZZ_REQUIRE(adcgs_push_discard_before(d, 1e9, NULL) == ADCGS_OK &&
+                         adcgs_get_splat_digest(d, 1e9, digest, NULL) == ADCGS_OK);
         else if (arrived == ADCGS_ARRIVED_SEGMENT)
             FUZZ_REQUIRE(adcgs_get_model_digest(d, 0, digest, NULL) == ADCGS_OK);
         if (arrived == ADCGS_ARRIVED_END)
@@ -190,7 +191,7 @@ static void join(const uint8_t *data, size_t size, const adcgs_config *config, s
 {
     adcgs_config how = *config;
     const size_t at = size * where / 256;
-    how.join = 1;
+    how.tune_in = 1;
     push(data + at, size - at, &how, step, 0);
 }
 

@@ -182,7 +182,7 @@ class Sources(unittest.TestCase):
             self.assertTrue(stream.info.truncated)
         with adcgs.open_push() as stream:
             stream.push(self.data)
-            stream.forget(self.times[-1])
+            stream.discard_before(self.times[-1])
             self.assertGreater(stream.info.first_segment, 0)
             self.assertEqual(stream.splat_digest(self.times[-1]), self.expected[-1])
 

@@ -182,13 +182,13 @@ static void play_pushed(const fixture *f, int forgets)
     for (size_t at = 0; at < f->bytes.size;) {
         size_t used;
         adcgs_arrival arrived;
-        adcgs_info info = { .time_final = -INFINITY };
+        adcgs_info info = { .time_committed = -INFINITY };
         assert_int_equal(adcgs_push(d, f->bytes.data + at, f->bytes.size - at, &used, &arrived, NULL), ADCGS_OK);
         at += used;
         adcgs_get_info(d, &info, sizeof info, NULL);
-        for (; next < TIMES && time_of(in_order[next]) < info.time_final; next++) {
+        for (; next < TIMES && time_of(in_order[next]) < info.time_committed; next++) {
             if (forgets)
-                assert_int_equal(adcgs_push_forget(d, time_of(in_order[next]), NULL), ADCGS_OK);
+                assert_int_equal(adcgs_push_discard_before(d, time_of(in_order[next]), NULL), ADCGS_OK);
             check_frame(d, in_order[next]);
         }
     }
@@ -263,7 +263,7 @@ static void test_joined(void **state)
     adcgs_write_bytes(&b, f->bytes.data + ADCGS_SIGNATURE_BYTES, head);
     adcgs_write_bytes(&b, f->bytes.data + at, f->bytes.size - at);
     adcgs_config_init(&config, sizeof config);
-    config.join = 1;
+    config.tune_in = 1;
     assert_int_equal(adcgs_open_memory(&d, b.data, b.size, &config, NULL), ADCGS_OK);
     for (int i = 0; i < TIMES; i++) {
         const uint32_t segment = segment_of(&f->stream, time_of(i));

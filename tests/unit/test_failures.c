@@ -47,7 +47,7 @@ static shown look(adcgs_decoder *d)
         s.status[i] = adcgs_get_splat_digest(d, 0.001 * (7 + 30 * i), s.digest[i], NULL);
     if (s.info_status == ADCGS_OK) {
         s.segments = info.segments;
-        s.drawable = info.time_drawable;
+        s.drawable = info.time_available;
         s.tiers_present = info.tiers_present;
     }
     return s;
@@ -61,7 +61,7 @@ static void check_same(const shown *before, const shown *after, const char *name
         fail_msg("%s: splats changed by a failure", name);
     assert_in_range(after->segments, before->segments, before->segments + 1);
     if (before->info_status == ADCGS_OK && before->drawable != after->drawable)
-        fail_msg("%s: time_drawable is %g after a failure, %g before", name, after->drawable, before->drawable);
+        fail_msg("%s: time_available is %g after a failure, %g before", name, after->drawable, before->drawable);
 }
 
 static adcgs_decoder *open_push(uint64_t memory)

@@ -228,7 +228,7 @@ static adcgs_config joining(void)
     adcgs_config config;
     adcgs_config_init(&config, sizeof config);
     config.threads = 1;
-    config.join = 1;
+    config.tune_in = 1;
     return config;
 }
 

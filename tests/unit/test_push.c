@@ -210,14 +210,14 @@ static void test_final(void **state)
     int early = 0;
     assert_int_equal(adcgs_open_memory(&whole, f->bytes.data, f->bytes.size, NULL, NULL), ADCGS_OK);
     assert_int_equal(adcgs_get_info(whole, &all, sizeof all, NULL), ADCGS_OK);
-    assert_true(isinf(all.time_final) && all.time_final > 0);
+    assert_true(isinf(all.time_committed) && all.time_committed > 0);
     for (size_t at = 0; at < f->bytes.size; at++) {
         assert_int_equal(push_all(d, f->bytes.data + at, 1, &seed, 1), ADCGS_OK);
         if (adcgs_get_info(d, &info, sizeof info, NULL) != ADCGS_OK)
             continue;
         assert_true(info.time_end == all.time_end && info.bytes.total == at + 1);
-        assert_int_equal(info.segments_promised, SEGMENTS);
-        for (; time <= all.time_end && time < info.time_final; time += 1e-3) {
+        assert_int_equal(info.segments_total, SEGMENTS);
+        for (; time <= all.time_end && time < info.time_committed; time += 1e-3) {
             uint8_t ours[16], theirs[16];
             assert_int_equal(adcgs_get_splat_digest(d, time, ours, NULL), ADCGS_OK);
             assert_int_equal(adcgs_get_splat_digest(whole, time, theirs, NULL), ADCGS_OK);
@@ -246,13 +246,13 @@ static adcgs_status play_through(const fixture *f, uint64_t memory_limit, int fo
     uint32_t next = 0; /* segment to render */
     for (size_t at = 0, used = 0; at < f->bytes.size && status == ADCGS_OK; at += used) {
         adcgs_arrival arrived;
-        adcgs_info info = { .time_final = -INFINITY };
+        adcgs_info info = { .time_committed = -INFINITY };
         status = adcgs_push(d, f->bytes.data + at, f->bytes.size - at, &used, &arrived, NULL);
         adcgs_get_info(d, &info, sizeof info, NULL);
-        for (; status == ADCGS_OK && next < s->n_segments && s->segments[next].time_start < info.time_final; next++) {
+        for (; status == ADCGS_OK && next < s->n_segments && s->segments[next].time_start < info.time_committed; next++) {
             uint8_t digest[16], expected[16];
             if (forgets)
-                assert_int_equal(adcgs_push_forget(d, s->segments[next].time_start, NULL), ADCGS_OK);
+                assert_int_equal(adcgs_push_discard_before(d, s->segments[next].time_start, NULL), ADCGS_OK);
             status = adcgs_get_splat_digest(d, s->segments[next].time_start, digest, NULL);
             if (status == ADCGS_OK)
                 status = adcgs_get_model_digest(d, (int)next, digest, NULL);
@@ -301,7 +301,7 @@ static void test_forget(void **state)
 
     adcgs_decoder *whole = NULL;
     assert_int_equal(adcgs_open_memory(&whole, f->bytes.data, f->bytes.size, NULL, NULL), ADCGS_OK);
-    assert_int_equal(adcgs_push_forget(whole, 0, NULL), ADCGS_ERR_USAGE);
+    assert_int_equal(adcgs_push_discard_before(whole, 0, NULL), ADCGS_ERR_USAGE);
     adcgs_close(&whole);
 }
 

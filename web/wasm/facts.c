@@ -105,14 +105,15 @@ const char *PAGE_EXPORT(page_facts)(void)
     t.used = 0;
     put(&t, "{\"library\":\"%s\",\"version\":\"%d.%d\",\"level\":%d", adcgs_version_string(), info.version_major,
         info.version_minor, info.level);
-    put(&t, ",\"segments\":%d,\"segments_promised\":%d,\"anchors\":%u,\"static_anchors\":%u,\"gaussians\":%u,\"weights\":%u",
-        info.segments, info.segments_promised, (unsigned)info.anchors, (unsigned)info.static_anchors, (unsigned)info.gaussians,
+    put(&t, ",\"segments\":%d,\"segments_total\":%d,\"anchors\":%u,\"static_anchors\":%u,\"gaussians\":%u,\"weights\":%u",
+        info.segments, info.segments_total, (unsigned)info.anchors, (unsigned)info.static_anchors, (unsigned)info.gaussians,
         (unsigned)info.weights);
-    put(&t, ",\"layers\":%d,\"tiers\":%d,\"tiers_present\":%d,\"tiers_coming\":%d,\"cameras\":%d,\"truncated\":%d,\"faults\":%d",
-        info.layers, info.tiers, info.tiers_present, info.tiers_coming, info.cameras, info.truncated, info.faults);
+    put(&t,
+        ",\"layers\":%d,\"tiers\":%d,\"tiers_present\":%d,\"tiers_received\":%d,\"cameras\":%d,\"truncated\":%d,\"faults\":%d",
+        info.layers, info.tiers, info.tiers_present, info.tiers_received, info.cameras, info.truncated, info.faults);
     put_number(&t, "time_start", info.time_start);
     put_number(&t, "time_end", info.time_end);
-    put_number(&t, "time_drawable", info.time_drawable);
+    put_number(&t, "time_available", info.time_available);
     put_number(&t, "frame_rate", info.frame_rate);
     put(&t, ",\"background\":[%.9g,%.9g,%.9g]", (double)info.background[0], (double)info.background[1],
         (double)info.background[2]);

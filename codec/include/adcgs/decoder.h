@@ -58,7 +58,7 @@ ADCGS_API adcgs_status adcgs_open_memory(adcgs_decoder **out, const void *data, 
 
 /**
  * Open a stream from a pipe or any other sequential source, as adcgs_open_file() opens a file. The stream is read once, in order,
- * up to its end and not beyond. With config.join, the beginning of the stream may be missing (tune-in). The decoder then skips
+ * up to its end and not beyond. With config.tune_in, the beginning of the stream may be missing (tune-in). The decoder then skips
  * bytes up to the next HEAD and segments up to the next key; info.first_segment is the number of segments missed. The same holds
  * for adcgs_push().
  * \param out receives the decoder; NULL on failure
@@ -130,7 +130,7 @@ ADCGS_API adcgs_status adcgs_push(adcgs_decoder *decoder, const void *data, size
  * \param error says why it failed
  * \return ADCGS_OK, or ADCGS_ERR_USAGE if adcgs_open_push() did not open the decoder
  */
-ADCGS_API adcgs_status adcgs_push_forget(adcgs_decoder *decoder, double time, adcgs_error *error);
+ADCGS_API adcgs_status adcgs_push_discard_before(adcgs_decoder *decoder, double time, adcgs_error *error);
 
 /**
  * Declare that no more bytes will come. If the stream has not ended, its complete part remains, as with adcgs_open_stream().

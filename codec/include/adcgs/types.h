@@ -89,7 +89,7 @@ typedef struct adcgs_config {
     void *log_user;        /**< passed to log */
     int conceal;           /**< nonzero: use the intact parts of a damaged stream, and report the damage to log */
     int on_demand;         /**< nonzero: read segments of a file when the caller requests a time (adcgs_open_file()) */
-    int join;              /**< nonzero: tune in: if the beginning of a stream is missing, begin at the next header and key */
+    int tune_in;           /**< nonzero: if the beginning of a stream is missing, begin at the next header and key */
 } adcgs_config;
 
 /** Bytes of a stream by content (clause "Chunks"). */
@@ -139,10 +139,10 @@ typedef struct adcgs_info {
     int faults;             /**< number of concealed faults, if config.conceal is set */
     int tiers;              /**< sets of anchors of the stream (clause "Tiers"): the maximum over its segments, 1..8 */
     int tiers_present;      /**< tiers that are available in all segments */
-    double time_final;      /**< seconds: content before it no longer changes; infinity: no more bytes will come */
-    double time_drawable;   /**< seconds: end of the content that can be rendered now; minus infinity: none */
-    int segments_promised;  /**< total number of segments of a pushed stream; 0: its header does not give it */
-    int tiers_coming;       /**< tiers of the segment being received that can be rendered; 0: none, or no such segment */
+    double time_committed;  /**< seconds: content before it no longer changes; infinity: no more bytes will come */
+    double time_available;  /**< seconds: end of the content that can be rendered now; minus infinity: none */
+    int segments_total;     /**< total number of segments of a pushed stream; 0: its header does not give it */
+    int tiers_received;     /**< tiers of the segment being received that can be rendered; 0: none, or no such segment */
     int first_segment;      /**< number of the first available segment: above 0 if earlier ones were freed or missed */
 } adcgs_info;
 
