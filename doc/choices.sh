@@ -21,13 +21,13 @@ choices()
 default
 anchors-by-detail --set detail_anchors=0
 lambda-by-contrast --lambda 0.1
-static-anchors --set still_below=0
-faint-primitives --set keep_opacity=0
+static-anchors --set static_threshold=0
+faint-primitives --set min_mean_opacity=0
 hidden-units --set prune_units_at=2,prune_units_again=2
-lives --set spans=0
-span-ends --set span_ends=0
+lives --set lifetimes=0
+span-ends --set lifetime_trim=0
 bodies --set bodies=0
-matching --set stereo=0
+matching --set matching_frames=0
 weight-steps --without weight_steps
 all-of-size --fixed
 papers-size --fixed --set max_anchors=20000,k=10,n_fg=16,time_width=64,omega_width=128,varpi_width=128,entropy_width=32,entropy_hidden=2

@@ -53,7 +53,7 @@ learn()
 {
     begin=$(date +%s.%N)
     cpu=$(sh -c 'mpirun --allow-run-as-root --oversubscribe -n "$0" ./adcgs-enc "$1/cross80" -o "$1/$2.adcgs" \
-        --fixed --no-progression --set "stereo=0,quarter_until=0,half_until=0,batch=$3" -n "$4" --log "$1/$2.log" --threads 1 \
+        --fixed --no-progression --set "matching_frames=0,quarter_size_until=0,half_size_until=0,batch=$3" -n "$4" --log "$1/$2.log" --threads 1 \
         -q >&2 && times' "$2" "$out" "$1" "$3" "$views" |
         sed -n '2s/[ms]/ /gp' | awk '{ printf "%.1f", 60 * ($1 + $3) + $2 + $4 }')
     wall=$(awk "BEGIN { print $(date +%s.%N) - $begin }")

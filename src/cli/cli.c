@@ -113,6 +113,8 @@ static int option_set(const adcgs_option *option, const char *text)
         return adcgs_parse_pair(text, (int)option->min, (int)option->max, option->target);
     case ADCGS_OPTION_CHOICE:
         return parse_choice(option, text);
+    case ADCGS_OPTION_FORMER: /* never passed here */
+        break;
     }
     return -1;
 }
@@ -149,6 +151,17 @@ static void describe(const adcgs_option *option, char *text, size_t size)
     }
 }
 
+/** The option itself; for a former name, the option of the present name, which must exist. */
+static const adcgs_option *present_option(const adcgs_cli *cli, const adcgs_option *option)
+{
+    const adcgs_option *now = cli->options;
+    if (option->kind != ADCGS_OPTION_FORMER)
+        return option;
+    while (strcmp(now->name, option->value) != 0)
+        now++;
+    return now;
+}
+
 static int option_wrong(const adcgs_cli *cli, const adcgs_option *option, const char *text)
 {
     char expected[200];
@@ -179,7 +192,8 @@ static int print_help(const adcgs_cli *cli)
     printf("Usage: %s [options] %s\n%s\n\nOptions:\n", cli->program, cli->operands, cli->summary);
     for (size_t i = 0; i < cli->n_options; i++) {
         const adcgs_option *option = &cli->options[i];
-        print_option(option->letter, option->name, option->value, option->help);
+        if (option->kind != ADCGS_OPTION_FORMER)
+            print_option(option->letter, option->name, option->value, option->help);
     }
     if (cli->quiet)
         print_option('q', "quiet", NULL, "print neither progress nor remarks");
@@ -204,7 +218,7 @@ static size_t getopt_tables(const adcgs_cli *cli, struct option *longs, char *le
     *letters++ = ':'; /* reports a missing value as ':' */
     for (size_t i = 0; i < n; i++) {
         const adcgs_option *option = &cli->options[i];
-        const int takes = option->kind != ADCGS_OPTION_FLAG;
+        const int takes = present_option(cli, option)->kind != ADCGS_OPTION_FLAG;
         longs[i] = (struct option){option->name, takes ? required_argument : no_argument, NULL, UCHAR_MAX + 1 + (int)i};
         if (option->letter) {
             *letters++ = option->letter;
@@ -275,7 +289,9 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
             return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: a value must follow", word);
         if (code == '?')
             return wrong_option(cli, word);
-        const adcgs_option *option = find_option(cli, code);
+        const adcgs_option *const given = find_option(cli, code), *const option = present_option(cli, given);
+        if (given != option)
+            adcgs_cli_note(cli, "--%s is now called --%s; the next release drops the former name", given->name, option->name);
         if (option_set(option, optarg))
             return option_wrong(cli, option, optarg);
     }

@@ -20,7 +20,8 @@ typedef enum adcgs_option_kind {
     ADCGS_OPTION_REAL,   /**< target: double */
     ADCGS_OPTION_SECONDS, /**< target: double; suffixes ms, s, m, min and h */
     ADCGS_OPTION_PAIR,   /**< target: int[2]; WIDTHxHEIGHT */
-    ADCGS_OPTION_CHOICE  /**< target: int, index into choices */
+    ADCGS_OPTION_CHOICE, /**< target: int, index into choices */
+    ADCGS_OPTION_FORMER  /**< former name of the option called `value`, accepted with a remark; not listed */
 } adcgs_option_kind;
 
 /** One option. A target keeps its value if the option is not given, so defaults are set there. */

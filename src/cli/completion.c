@@ -21,6 +21,8 @@ void adcgs_cli_print_completion(const adcgs_cli *cli)
 {
     for (size_t i = 0; i < cli->n_options; i++) {
         const adcgs_option *option = &cli->options[i];
+        if (option->kind == ADCGS_OPTION_FORMER)
+            continue;
         const char *kind = option->kind == ADCGS_OPTION_FLAG ? "flag" : option->kind == ADCGS_OPTION_FILE ? "file" : "value";
         print_row(option->name, option->letter, kind, option->value, option->choices, option->help);
     }

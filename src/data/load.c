@@ -220,7 +220,7 @@ static float *to_planes(const adcgs_image *image)
  * Divides an image by its excess of light. The true values of clipped pixels are unknown: they become NaN. Values that were not
  * clipped stay at most white.
  */
-static void even_light(const adcgs_scene_view *view, float *rgb, size_t plane)
+static void compensate_light_step(const adcgs_scene_view *view, float *rgb, size_t plane)
 {
     float by[3];
     for (int c = 0; c < 3; c++)
@@ -311,7 +311,7 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
     const int is_plain = !scene->splats && !view->is_video && !view->mask && view->lens.width <= 0;
     ADCGS_TRY((is_plain ? load_by_rows : load_whole)(scene, view, divide, rgb, error));
     if (view->stops[0] != 0.0f || view->stops[1] != 0.0f || view->stops[2] != 0.0f)
-        even_light(view, *rgb, (size_t)seen.width * (size_t)seen.height);
+        compensate_light_step(view, *rgb, (size_t)seen.width * (size_t)seen.height);
     if (camera)
         *camera = seen;
     return ADCGS_OK;

@@ -37,7 +37,7 @@ void adcgs_plan_clear(adcgs_plan *p)
 /** The mean share of all image pixels that an iteration renders: images begin smaller. */
 static double share_drawn(const adcgs_train_config *c)
 {
-    const double quarter = fmin((double)c->quarter_until, 1), half = fmax(fmin((double)c->half_until, 1), quarter);
+    const double quarter = fmin((double)c->quarter_size_until, 1), half = fmax(fmin((double)c->half_size_until, 1), quarter);
     return (quarter / 16 + (half - quarter) / 4 + (1 - half)) / ((double)c->scale * c->scale);
 }
 

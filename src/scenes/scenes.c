@@ -18,7 +18,7 @@
 #define OBJECTS_MAX 32
 #define SAMPLES 3
 #define PATH_BYTES 4096
-#define MOMENTS_MAX 100000
+#define FRAMES_MAX 100000
 #define CAMERAS_MAX 1000
 #define MOTION_MIN 0.001
 #define MOTION_MAX 10.0
@@ -295,9 +295,9 @@ static adcgs_status write_split(writer *w, int split)
 /* Applies the requested numbers of times and cameras. */
 static adcgs_status take_counts(adcgs_scenes_entry *scene, const adcgs_scenes_options *options, adcgs_error *error)
 {
-    if (options->moments < 0 || options->moments > MOMENTS_MAX || options->cameras < 0 || options->cameras > CAMERAS_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: %d moments, %d cameras, expected up to %d and %d", options->moments,
-                          options->cameras, MOMENTS_MAX, CAMERAS_MAX);
+    if (options->frames < 0 || options->frames > FRAMES_MAX || options->cameras < 0 || options->cameras > CAMERAS_MAX)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: %d frames, %d cameras, expected up to %d and %d", options->frames,
+                          options->cameras, FRAMES_MAX, CAMERAS_MAX);
     if (options->cameras && scene->cameras == 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s has one camera: their number cannot be changed", scene->name);
     const int each = scene->cameras / scene->turns; /* number of cameras that see each time */
@@ -308,8 +308,8 @@ static adcgs_status take_counts(adcgs_scenes_entry *scene, const adcgs_scenes_op
         scene->cameras = options->cameras;
         scene->turns = ADCGS_MAX(options->cameras / each, 1);
     }
-    if (options->moments)
-        scene->times = options->moments;
+    if (options->frames)
+        scene->times = options->frames;
     if (options->watch)
         scene->n_val = options->watch;
     return ADCGS_OK;

@@ -17,7 +17,7 @@ typedef struct adcgs_scenes_options {
     const char *name;   /**< of the scene, see adcgs_scenes_name() */
     int width, height;  /**< of the images; 0: the scene's own size */
     const char *format; /**< extension of the images: "png" or "ppm"; NULL: "png" */
-    int moments;        /**< times that the training cameras see, 1 to 100000, over the same duration; 0: the scene's own */
+    int frames;         /**< times that the training cameras see, 1 to 100000, over the same duration; 0: the scene's own */
     int cameras;        /**< training cameras, 1 to 1000; 0: the scene's own. The number that sees each time stays that of the
                              scene, or all if they are fewer */
     int watch;          /**< 0, or the number of validation views, 2 to 1000, in order of time, of one fixed camera */

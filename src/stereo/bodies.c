@@ -93,7 +93,7 @@ static adcgs_status plant(work *w, int moment, uint32_t part, adcgs_error *error
 /** True if the body's motion is nearly constant between most frames. Tracks of chance matches jump. */
 static int is_steady(const work *w)
 {
-    double off[ADCGS_STEREO_MOMENTS];
+    double off[ADCGS_MATCHING_FRAMES_MAX];
     uint32_t n = 0;
     int before[2] = { -1, -1 };
     for (int m = 0; m < w->l.n; m++) {
@@ -173,7 +173,7 @@ static verdict judge(const work *w)
 {
     const adcgs_track *t = &w->t;
     double share = 0, far = 0;
-    int known = 0, at[ADCGS_STEREO_MOMENTS];
+    int known = 0, at[ADCGS_MATCHING_FRAMES_MAX];
     for (int m = 0; m < w->l.n; m++)
         if (t->known[m]) {
             at[known++] = m;

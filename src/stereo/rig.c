@@ -218,17 +218,17 @@ static uint8_t middle_of(uint8_t *values, int n)
 /** Sets the background to the median of the pixel over the frames, and marks the pixel if too few frames are close to it. */
 static void set_usual(adcgs_stereo_camera *c, size_t pixel)
 {
-    uint8_t values[ADCGS_STEREO_MOMENTS], usual[4];
+    uint8_t values[ADCGS_MATCHING_FRAMES_MAX], usual[4];
     int n = 0, near = 0;
     for (size_t k = 0; k < 4; k++) {
         n = 0;
-        for (int m = 0; m < ADCGS_STEREO_MOMENTS; m++)
+        for (int m = 0; m < ADCGS_MATCHING_FRAMES_MAX; m++)
             if (c->shown[m])
                 values[n++] = c->shown[m][4 * pixel + k];
         usual[k] = middle_of(values, n);
         c->usual[4 * pixel + k] = usual[k] * (1.0f / 255);
     }
-    for (int m = 0; m < ADCGS_STEREO_MOMENTS; m++) {
+    for (int m = 0; m < ADCGS_MATCHING_FRAMES_MAX; m++) {
         int off = 0;
         for (size_t k = 0; c->shown[m] && k < 4; k++)
             off = ADCGS_MAX(off, abs(c->shown[m][4 * pixel + k] - usual[k]));
@@ -301,7 +301,7 @@ static adcgs_status load_cameras(adcgs_stereo_rig *rig, const adcgs_scene *scene
 
 static uint32_t moments_of(const adcgs_stereo_options *o)
 {
-    return o->moments ? o->moments : ADCGS_STEREO_MOMENTS;
+    return o->moments ? o->moments : ADCGS_MATCHING_FRAMES_MAX;
 }
 
 /** Loads evenly spaced images of a moving camera as one image each of static cameras. */
@@ -346,7 +346,7 @@ void adcgs_stereo_rig_clear(adcgs_stereo_rig *rig)
     for (int c = 0; c < rig->n_cameras; c++) {
         adcgs_free(NULL, rig->camera[c].usual);
         adcgs_free(NULL, rig->camera[c].changes);
-        for (int m = 0; m < ADCGS_STEREO_MOMENTS; m++)
+        for (int m = 0; m < ADCGS_MATCHING_FRAMES_MAX; m++)
             adcgs_free(NULL, rig->camera[c].shown[m]);
     }
     memset(rig, 0, sizeof *rig);

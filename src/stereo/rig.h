@@ -30,7 +30,7 @@ typedef struct adcgs_stereo_camera {
     uint32_t first;                     /**< index of its first training view */
     float *usual;                       /**< [h][w][4] background, the median over frames; owned */
     uint8_t *changes;                   /**< [h][w] 1: no stable background */
-    uint8_t *shown[ADCGS_STEREO_MOMENTS];  /**< [h][w][4] image of each frame; NULL: none */
+    uint8_t *shown[ADCGS_MATCHING_FRAMES_MAX]; /**< [h][w][4] image of each frame; NULL: none */
 } adcgs_stereo_camera;
 
 /** Zero-initialise before use. */
@@ -38,7 +38,7 @@ typedef struct adcgs_stereo_rig {
     int n_cameras, n_moments;
     int film; /**< 1: a single moving camera; camera m has an image of frame m only */
     adcgs_stereo_camera camera[ADCGS_STEREO_CAMERAS];
-    float moment[ADCGS_STEREO_MOMENTS]; /**< t of each frame, ascending */
+    float moment[ADCGS_MATCHING_FRAMES_MAX]; /**< t of each frame, ascending */
     double nearest, farthest;        /**< range of depths to search, scene units */
 } adcgs_stereo_rig;
 

@@ -16,7 +16,7 @@
 #include "base/pool.h"
 #include "data/scene.h"
 
-enum { ADCGS_STEREO_MOMENTS = 48 /**< maximum number of matched frames */ };
+enum { ADCGS_MATCHING_FRAMES_MAX = 48 /**< maximum number of matched frames */ };
 
 /** Relation of a moving point to the static surfaces. */
 typedef enum adcgs_stereo_in_place {
@@ -55,7 +55,7 @@ typedef struct adcgs_stereo_options {
     double origin[3], scale; /**< of scene units, see adcgs_scene_frame() */
     uint32_t still;          /**< maximum number of static points */
     uint32_t moving;         /**< maximum number of moving points per frame */
-    uint32_t moments;        /**< maximum number of matched frames, evenly spaced; 0: ADCGS_STEREO_MOMENTS */
+    uint32_t moments;        /**< maximum number of matched frames, evenly spaced; 0: ADCGS_MATCHING_FRAMES_MAX */
     uint32_t bodies;         /**< maximum number of rigid bodies, up to ADCGS_BODIES_MAX; 0: no search */
     int judges;              /**< 1: measure pose errors and report outliers */
 } adcgs_stereo_options;

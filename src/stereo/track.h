@@ -12,8 +12,8 @@
 /** A body and its poses. Zero-initialise before use. */
 typedef struct adcgs_track {
     adcgs_body_model model;
-    adcgs_placing place[ADCGS_STEREO_MOMENTS];
-    uint8_t known[ADCGS_STEREO_MOMENTS];
+    adcgs_placing place[ADCGS_MATCHING_FRAMES_MAX];
+    uint8_t known[ADCGS_MATCHING_FRAMES_MAX];
 } adcgs_track;
 
 /** Tracks the model, which is at rest in frame `start`, to all other frames. */

@@ -19,7 +19,7 @@ int main(int argc, char **argv)
     for (int i = 0; i < SCENES_MAX && adcgs_scenes_name(i); i++)
         scenes[i] = adcgs_scenes_name(i);
     const char *scene = "demo", *directory = "demo-scene", *spoil = NULL;
-    int size[2] = {0, 0}, moments = 0, cameras = 0, watch = 0, format = 0, threads = 0, list = 0, quiet = 0, first = 0;
+    int size[2] = {0, 0}, frames = 0, cameras = 0, watch = 0, format = 0, threads = 0, list = 0, quiet = 0, first = 0;
     double motion = 1.0, noise = 0.0, aside = 0.0;
     const adcgs_option options[] = {
         {.name = "scene", .kind = ADCGS_OPTION_STRING, .target = &scene, .value = "NAME", .choices = scenes,
@@ -28,8 +28,9 @@ int main(int argc, char **argv)
          .help = "size of the images, pixels (default: the scene's own)"},
         {.name = "motion", .kind = ADCGS_OPTION_REAL, .target = &motion, .min = 0.001, .max = 10.0, .value = "FACTOR",
          .help = "factor of all motion (default: 1)"},
-        {.name = "moments", .kind = ADCGS_OPTION_INT, .target = &moments, .min = 1, .max = 100000, .value = "N",
+        {.name = "frames", .kind = ADCGS_OPTION_INT, .target = &frames, .min = 1, .max = 100000, .value = "N",
          .help = "number of timestamps in the same duration (default:\nthe scene's own)"},
+        {.name = "moments", .kind = ADCGS_OPTION_FORMER, .value = "frames"},
         {.name = "cameras", .kind = ADCGS_OPTION_INT, .target = &cameras, .min = 1, .max = 1000, .value = "N",
          .help = "number of training cameras (default: the scene's own)"},
         {.name = "noise", .kind = ADCGS_OPTION_REAL, .target = &noise, .min = 0.0, .max = 64.0, .value = "LEVELS",
@@ -65,7 +66,7 @@ int main(int argc, char **argv)
         return adcgs_cli_leave(&cli, 0);
     adcgs_pool *pool = NULL;
     adcgs_progress progress;
-    adcgs_scenes_options wanted = {.name = scene, .width = size[0], .height = size[1], .moments = moments, .cameras = cameras,
+    adcgs_scenes_options wanted = {.name = scene, .width = size[0], .height = size[1], .frames = frames, .cameras = cameras,
                                    .watch = watch, .aside = aside, .noise = noise, .format = formats[format], .motion = motion};
     if (adcgs_spoil_parse(&wanted.spoil, spoil, &error) != ADCGS_OK)
         return adcgs_cli_fail(&cli, &error);

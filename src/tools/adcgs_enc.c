@@ -23,6 +23,7 @@
 #include "tools/enc_run.h"
 #include "tools/enc_segments.h"
 #include "tools/enc_trials.h"
+#include "tools/former_settings.h"
 #include "train/settings.h"
 
 #include <adcgs/adcgs.h>
@@ -40,7 +41,7 @@
 /**
  * Settings of --fixed: no decision on the model's size depends on the scene. Later decisions need these, so they are off as well.
  */
-#define FIXED "detail_anchors=0,still_below=0,decide_at=2,prune_units_at=2"
+#define FIXED "detail_anchors=0,static_threshold=0,prune_at=2,prune_units_at=2"
 
 static adcgs_status configure(adcgs_train_config *c, const adcgs_enc_options *o, adcgs_cpu_level cpu, adcgs_error *error)
 {
@@ -549,6 +550,8 @@ static adcgs_status run_program(const adcgs_cli *cli, adcgs_enc_options *o, cons
         snprintf(log, sizeof log, "%s.%d", o->log, ranks->rank);
         o->log = log;
     }
+    if (o->set)
+        adcgs_former_settings_report(cli, o->set);
     adcgs_status status = adcgs_cli_pool(cli, &pool, o->threads, error);
     if (status == ADCGS_OK)
         status = encode(cli, o, ranks, pool, met, error);

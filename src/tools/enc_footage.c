@@ -55,7 +55,8 @@ static void say_doubled(const adcgs_cli *cli, const adcgs_scene *scene, const ad
     char more[64], of_this[64] = "";
     if (f->size > 1)
         snprintf(of_this, sizeof of_this, ", %u of this camera", f->count - 1);
-    adcgs_cli_note(cli, "%s: the image at %.3f s repeats the previous one%s%s: check for doubled frames (--set retime_doubled)",
+    adcgs_cli_note(cli,
+                   "%s: the image at %.3f s repeats the previous one%s%s: check for doubled frames (--set retime_duplicates)",
                    short_name(scene, f->path), begins + f->from, so_are(more, f->size - 1), of_this);
 }
 
@@ -72,7 +73,7 @@ static void say_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcg
     static const char *const what[ADCGS_LIGHTS][2] = { { "bright", "exposure" }, { "red relative to green", "white balance" },
                                                        { "blue relative to green", "white balance" } };
     char more[64], question[80];
-    snprintf(question, sizeof question, "check %s and light (--set even_light)", what[f->light][1]);
+    snprintf(question, sizeof question, "check %s and light (--set exposure_step_compensation)", what[f->light][1]);
     adcgs_cli_note(cli, "%s: at %.3f s the images of %s become %.2f times as %s%s: %s", short_name(scene, f->path),
                    begins + f->to, f->cameras == f->of && f->of > 1 ? "all cameras" : "its camera", f->size, what[f->light][0],
                    f->cameras == f->of ? "" : others(more, ", and those of", f),
@@ -84,7 +85,7 @@ void adcgs_enc_tell_evened(const adcgs_cli *cli, const adcgs_scene *scene, const
     if (light->cameras)
         say_light(cli, scene, light, 0, 1);
     else
-        adcgs_cli_note(cli, "%s: even_light: no steps of light found", scene->directory);
+        adcgs_cli_note(cli, "%s: exposure_step_compensation: no steps of light found", scene->directory);
 }
 
 static void say_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)

@@ -271,8 +271,9 @@ static adcgs_status run(live_run *r, adcgs_error *error)
 adcgs_status adcgs_enc_live(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_error *error)
 {
     live_run r = { .w = w, .job = job };
-    if (job->config.even_light)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--live: even_light needs all images before training: leave it out");
+    if (job->config.exposure_step_compensation)
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--live: exposure_step_compensation needs all images before training: leave it out");
     w->is_live = 1;
     r.asked = job->config;
     job->config.own_anchors = 1; /* HEAD states the maximum of anchors before most images arrive */

@@ -215,7 +215,7 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     else if (status == ADCGS_OK && !*cli->quiet)
         print_text(r, &x);
     /* Test views keep their original light, so they do not match training views with evened light. */
-    const int tells = x.split != ADCGS_SPLIT_TRAIN && !r->config->even_light;
+    const int tells = x.split != ADCGS_SPLIT_TRAIN && !r->config->exposure_step_compensation;
     if (status == ADCGS_OK)
         adcgs_enc_doubt(cli, decoder, r->scene, tells ? x.quality.psnr : (double)NAN, r->file, r->heard);
     if (status == ADCGS_OK && !x.target.met)

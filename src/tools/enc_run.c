@@ -384,7 +384,7 @@ adcgs_status adcgs_enc_even_light(const adcgs_enc_job *job, adcgs_progress *prog
 {
     const adcgs_pictures_config config = { .memory = job->o->memory, .progress = looking, .user = progress };
     adcgs_fault found;
-    if (!job->config.even_light)
+    if (!job->config.exposure_step_compensation)
         return ADCGS_OK;
     ADCGS_TRY(adcgs_light_even(job->scene, &found, &config, job->pool, error));
     adcgs_progress_clear(progress);

@@ -5,6 +5,7 @@
 #include "tools/sweep_options.h"
 
 #include "layouts/open.h"
+#include "tools/former_settings.h"
 #include "train/settings.h"
 
 #include <errno.h>
@@ -79,6 +80,10 @@ static int check_settings(const adcgs_cli *cli, const adcgs_sweep *sweep)
         status = adcgs_frames_parse(&frames, sweep->frames, &error);
     if (status == ADCGS_OK && access(sweep->scene, R_OK))
         status = adcgs_fail(&error, ADCGS_ERR_IO, "%s: cannot open the scene: %s", sweep->scene, strerror(errno));
+    if (status == ADCGS_OK && sweep->set)
+        adcgs_former_settings_report(cli, sweep->set);
+    for (int i = 0; status == ADCGS_OK && i < sweep->grid.n; i++)
+        adcgs_former_settings_report(cli, sweep->grid.axis[i].name);
     return status == ADCGS_OK ? -1 : adcgs_cli_fail(cli, &error);
 }
 

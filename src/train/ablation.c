@@ -24,8 +24,8 @@ static void leave_out(adcgs_train_config *c, int bits)
     if (bits & ANCHORS)
         leave_out_anchors(c);
     if (bits & REMOVAL) {
-        c->prune_units_at = c->decide_at = 2;
-        c->still_below = 0; /* static anchors are detected before decide_at */
+        c->prune_units_at = c->prune_at = 2;
+        c->static_threshold = 0; /* static anchors are detected before prune_at */
     }
     if (bits & DENSIFICATION)
         c->start_anchors = c->max_anchors;

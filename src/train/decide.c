@@ -115,7 +115,7 @@ static uint32_t rest(const adcgs_fmodel *f, uint32_t anchor)
 adcgs_status adcgs_rest_unchanging(adcgs_trainer *t, adcgs_error *error)
 {
     const adcgs_fmodel *f = t->f;
-    if (!adcgs_fmodel_moves(f) || !(t->config.still_below > 0))
+    if (!adcgs_fmodel_moves(f) || !(t->config.static_threshold > 0))
         return ADCGS_OK;
     float *const share = adcgs_alloc(NULL, f->n, sizeof *share, error);
     const adcgs_status status = share ? adcgs_changing_share(t, share, error) : adcgs_alloc_status(error);
@@ -135,7 +135,7 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
         return adcgs_alloc_status(error);
     adcgs_status status = measure_motion(t, effect, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
-        if (effect[i] < t->config.still_below)
+        if (effect[i] < t->config.static_threshold)
             t->decisions.unmoved += rest(f, i);
     if (status == ADCGS_OK)
         status = adcgs_rest_unchanging(t, error);
@@ -168,7 +168,7 @@ static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
         if (t->stats.weight[i] < 0.05f * t->stats.in_view[anchor]) {
             f->keep[i] = 0;
             t->decisions.unseen++;
-        } else if (opacity < t->config.keep_opacity * there)
+        } else if (opacity < t->config.min_mean_opacity * there)
             faint[n++] = (adcgs_ranked){ -opacity / there, (uint32_t)i };
     }
     adcgs_rank(faint, n);

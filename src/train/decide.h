@@ -10,12 +10,12 @@
 
 /**
  * Tests if motion is worth its bytes. If freezing time costs less image loss than the deformation networks cost in rate, all
- * anchors become static. Runs at rate_from, so that the rest of the run can compensate.
+ * anchors become static. Runs at rate_start, so that the rest of the run can compensate.
  */
 adcgs_status adcgs_weigh_motion(adcgs_trainer *trainer, adcgs_error *error);
 
 /**
- * Makes anchors static that are rendered where the images of static cameras never change. Runs at rate_from, so that the rest of
+ * Makes anchors static that are rendered where the images of static cameras never change. Runs at rate_start, so that the rest of
  * the run can compensate. adcgs_decide() runs it again, because anchors have grown by then.
  */
 adcgs_status adcgs_rest_unchanging(adcgs_trainer *trainer, adcgs_error *error);

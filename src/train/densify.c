@@ -193,7 +193,7 @@ static void dress_moments(adcgs_trainer *t, const adcgs_stereo_point *const *poi
 
 double adcgs_densify_budget(const adcgs_train_config *c, double progress)
 {
-    const double ramp = fmin(1, (progress - c->densify_from) / (0.8 * (c->densify_until - c->densify_from)));
+    const double ramp = fmin(1, (progress - c->densify_start) / (0.8 * (c->densify_until - c->densify_start)));
     const double from = ADCGS_MIN(c->start_anchors, c->max_anchors);
     return from + (c->max_anchors - from) * ramp;
 }
@@ -251,7 +251,7 @@ static void keep_anchors(adcgs_trainer *t, workspace *w)
  */
 static int leaves_gaps(const adcgs_trainer *t, double progress)
 {
-    return t->scene->points.n >= ADCGS_POINTS_LEAST && progress < t->config.quarter_until;
+    return t->scene->points.n >= ADCGS_POINTS_LEAST && progress < t->config.quarter_size_until;
 }
 
 adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error)

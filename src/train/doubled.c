@@ -18,7 +18,7 @@ adcgs_status adcgs_doubled_find(adcgs_trainer *t, const adcgs_glance *glances, a
         adcgs_fault_doubled(&t->doubled, shows, views, &tracks, glances);
         adcgs_tracks_clear(&tracks);
     }
-    for (uint32_t i = 0; status == ADCGS_OK && t->config.retime_doubled && i < t->n_views; i++)
+    for (uint32_t i = 0; status == ADCGS_OK && t->config.retime_duplicates && i < t->n_views; i++)
         t->views[i].t = adcgs_trainer_time(t, views[shows[i]].time);
     adcgs_free(NULL, shows);
     return status;

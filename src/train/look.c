@@ -13,7 +13,7 @@ enum { PICTURES_AHEAD = 8 };
 
 int adcgs_look_is_rated(const adcgs_trainer *t, double progress)
 {
-    return progress >= t->config.rate_from && !t->config.without_rate && !t->frozen;
+    return progress >= t->config.rate_start && !t->config.without_rate && !t->frozen;
 }
 
 static int follows_exposure(const adcgs_trainer *t, double progress)
@@ -25,13 +25,13 @@ static adcgs_pass_mode mode_of(const adcgs_trainer *t, double progress, uint32_t
 {
     const adcgs_train_config *c = &t->config;
     const adcgs_quant quant = t->frozen ? ADCGS_QUANT_NONE : t->rounding ? ADCGS_QUANT_ROUND :
-                              progress >= c->noise_from && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
+                              progress >= c->quant_noise_start && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
     return (adcgs_pass_mode){ .quant = quant,
                               .deform = t->f->follows ? ADCGS_DEFORM_ALL :
-                                        progress < c->deform_from && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE :
-                                        progress < c->fine_from   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
+                                        progress < c->deform_start && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE :
+                                        progress < c->fine_start   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
                               .bf16 = c->bf16,
-                              .dropout = progress >= c->round_from ? 0 : c->dropout,
+                              .dropout = progress >= c->quant_round_start ? 0 : c->dropout,
                               .seed = (uint32_t)adcgs_random64(c->seed, 3000, number) };
 }
 
@@ -92,14 +92,14 @@ static adcgs_status add_prices(adcgs_trainer *t, double progress, uint32_t numbe
                                adcgs_raster_grads *grads, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
-    if (c->scale_weight > 0 && progress >= c->scale_from)
-        adcgs_scale_penalty(&t->pass->primitives, &t->viewpoints, c->scale_weight, grads->scale);
+    if (c->scale_reg_weight > 0 && progress >= c->scale_reg_start)
+        adcgs_scale_penalty(&t->pass->primitives, &t->viewpoints, c->scale_reg_weight, grads->scale);
     if (c->distortion_weight > 0 && number % (uint32_t)c->distortion_period == 0)
         ADCGS_TRY(adcgs_distortion_add(&t->distortion, t->raster, t->back, &t->pass->primitives, v, ADCGS_SCREEN_FILTER,
                                        c->distortion_weight * (float)c->distortion_period, grads, NULL, error));
     t->pass->pull = NULL;
-    if (c->rigid_weight > 0 && deform && t->f->mlp[ADCGS_P_OMEGA].n) {
-        adcgs_rigidity_pull(&t->rigid, t->pass, t->f, c->rigid_weight);
+    if (c->rigidity_weight > 0 && deform && t->f->mlp[ADCGS_P_OMEGA].n) {
+        adcgs_rigidity_pull(&t->rigid, t->pass, t->f, c->rigidity_weight);
         t->pass->pull = t->rigid.pull;
     }
     return ADCGS_OK;

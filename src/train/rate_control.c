@@ -45,7 +45,7 @@ static double networks_left(const adcgs_trainer *t)
     const adcgs_train_config *c = &t->config;
     const double again = (double)c->prune_units_again, first = (double)c->prune_units_at * c->iterations;
     double left = t->rounding ? 1 : LATTICES_LEAVE;
-    if (t->slimmed < 2 && again < (double)c->round_from && adcgs_train_prunes_units(c))
+    if (t->slimmed < 2 && again < (double)c->quant_round_start && adcgs_train_prunes_units(c))
         left *= t->slimmed && first >= ADCGS_UNITS_AFTER ? UNITS_LEAVE_AGAIN : UNITS_LEAVE;
     return left;
 }
@@ -137,7 +137,7 @@ adcgs_status adcgs_rate_control_step(adcgs_trainer *t, double progress, adcgs_er
     const adcgs_train_config *c = &t->config;
     adcgs_rate_control *s = &t->rate_control;
     const int waits = c->target == ADCGS_TARGET_PSNR && s->tries && !t->rounding; /* full size is rendered but not trained yet */
-    if (c->target == ADCGS_TARGET_NONE || progress < c->rate_from || t->frozen || waits || t->iteration % STEP_EVERY ||
+    if (c->target == ADCGS_TARGET_NONE || progress < c->rate_start || t->frozen || waits || t->iteration % STEP_EVERY ||
         !(estimate(t) > 0))
         return ADCGS_OK;
     if (!s->measured || progress >= s->measured + MEASURE_EVERY) {

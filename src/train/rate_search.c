@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-#define LOOK_AFTER 0.06    /* fraction of the run from decide_at to the first measurement of bytes */
-#define VERDICT_AFTER 0.1  /* fraction of the run from decide_at to the second measurement */
+#define LOOK_AFTER 0.06    /* fraction of the run from prune_at to the first measurement of bytes */
+#define VERDICT_AFTER 0.1  /* fraction of the run from prune_at to the second measurement */
 /** Predicted further change of the bytes, relative to the change between the measurements, which grows with lambda. */
 #define FALL_AHEAD 1.0
 #define NEAR 0.08          /* |log of bytes over room| up to which the controller can take over */
@@ -22,14 +22,14 @@ enum { TRIES = 4 };
 
 static double verdict_at(const adcgs_train_config *c)
 {
-    return (double)c->decide_at + VERDICT_AFTER;
+    return (double)c->prune_at + VERDICT_AFTER;
 }
 
 int adcgs_rate_is_sought(const adcgs_trainer *t)
 {
     const adcgs_train_config *c = &t->config;
     return c->target != ADCGS_TARGET_NONE && t->rate_control.tries < TRIES && !(c->time_limit > 0) && !c->without_rate &&
-           verdict_at(c) > (double)c->rate_from && verdict_at(c) < fmin((double)c->round_from, 1);
+           verdict_at(c) > (double)c->rate_start && verdict_at(c) < fmin((double)c->quant_round_start, 1);
 }
 
 /** Next lambda, by the power that the last two tries show. */
@@ -76,11 +76,11 @@ adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_err
     const int is_size = t->config.target == ADCGS_TARGET_SIZE;
     adcgs_rate_control *s = &t->rate_control;
     double off;
-    if (progress < (double)t->config.rate_from)
+    if (progress < (double)t->config.rate_start)
         return ADCGS_OK;
     if (!t->begin.size)
         return keep_beginning(t, error);
-    if (progress < (double)t->config.decide_at + LOOK_AFTER || (s->looked && progress < verdict_at(&t->config)))
+    if (progress < (double)t->config.prune_at + LOOK_AFTER || (s->looked && progress < verdict_at(&t->config)))
         return ADCGS_OK;
     ADCGS_TRY(adcgs_rate_measure(t, progress, &off, error));
     if (!s->looked) {

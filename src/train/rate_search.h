@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Search for the lambda of a size or a quality. Content discarded early does not come back, and content kept early hardly goes.
- * So a run with a target has one lambda from rate_from until after decide_at. By then its final bytes are known within a few
- * percent, and its PSNR within some tenths. If they do not fit, the run returns to rate_from with a better lambda. After the
+ * So a run with a target has one lambda from rate_start until after prune_at. By then its final bytes are known within a few
+ * percent, and its PSNR within some tenths. If they do not fit, the run returns to rate_start with a better lambda. After the
  * search, lambda is controlled (rate_control.h).
  */
 #ifndef ADCGS_TRAIN_RATE_SEARCH_H

@@ -12,12 +12,12 @@ static float times_of(const adcgs_train_config *c, int group)
     case ADCGS_P_FG:
     case ADCGS_P_SIGMA:
     case ADCGS_P_COLOUR:
-    case ADCGS_P_ETA: return c->learn_features;
-    case ADCGS_P_THETA: return c->learn_prediction;
+    case ADCGS_P_ETA: return c->lr_scale_anchors;
+    case ADCGS_P_THETA: return c->lr_scale_prediction;
     case ADCGS_P_OMEGA:
     case ADCGS_P_VARPI:
-    case ADCGS_P_TIME: return c->learn_motion;
-    default: return c->learn_entropy;
+    case ADCGS_P_TIME: return c->lr_scale_motion;
+    default: return c->lr_scale_entropy;
     }
 }
 
@@ -42,7 +42,7 @@ void adcgs_train_rates(const adcgs_train_config *c, adcgs_fmodel *f)
 
 float adcgs_train_rate(const adcgs_train_config *c, float first, float last, double progress)
 {
-    const double from = (double)c->rates_fall_from;
+    const double from = (double)c->lr_decay_start;
     if (!(first > 0)) /* frozen group */
         return 0;
     return progress <= from ? first : first * powf(last / first, (float)((progress - from) / (1 - from)));
@@ -50,7 +50,7 @@ float adcgs_train_rate(const adcgs_train_config *c, float first, float last, dou
 
 float adcgs_train_lambda_from(const adcgs_train_config *c)
 {
-    return c->without_rate ? 2 : ADCGS_MIN(c->rate_from, c->prune_units_at);
+    return c->without_rate ? 2 : ADCGS_MIN(c->rate_start, c->prune_units_at);
 }
 
 int adcgs_train_prunes_units(const adcgs_train_config *c)
@@ -61,13 +61,13 @@ int adcgs_train_prunes_units(const adcgs_train_config *c)
 
 const char *adcgs_train_stage(const adcgs_train_config *c, double progress)
 {
-    if (progress < c->deform_from)
+    if (progress < c->deform_start)
         return "canonical";
-    if (progress < c->noise_from)
+    if (progress < c->quant_noise_start)
         return "deform";
-    if (progress < c->rate_from)
+    if (progress < c->rate_start)
         return "noise";
-    if (progress < c->round_from)
+    if (progress < c->quant_round_start)
         return "rate";
-    return progress < c->freeze_from ? "round" : "networks";
+    return progress < c->freeze_start ? "round" : "networks";
 }

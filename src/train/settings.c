@@ -10,10 +10,28 @@
 
 const adcgs_setting *adcgs_setting_find(const char *name)
 {
+    const adcgs_setting_former *former = adcgs_settings_former;
+    while (former->name && strcmp(former->name, name) != 0)
+        former++;
+    const char *const now = former->name ? former->now : name;
     const adcgs_setting *s = adcgs_settings;
-    while (s->name && strcmp(s->name, name) != 0)
+    while (s->name && strcmp(s->name, now) != 0)
         s++;
     return s->name ? s : NULL;
+}
+
+const adcgs_setting_former *adcgs_setting_next_former(const char **list)
+{
+    while (**list) {
+        const char *const name = *list;
+        const size_t length = strcspn(name, "=,");
+        *list += strcspn(name, ",");
+        *list += **list == ',';
+        for (const adcgs_setting_former *former = adcgs_settings_former; former->name; former++)
+            if (strlen(former->name) == length && !memcmp(former->name, name, length))
+                return former;
+    }
+    return NULL;
 }
 
 void adcgs_setting_names(const char *names[ADCGS_SETTING_NAMES + 1])
@@ -128,8 +146,8 @@ static adcgs_status check_relations(const adcgs_train_config *c, adcgs_error *er
         return fail_relation(c, "time_rows", "time_width", "a time_width of at least 1", error);
     if (c->start_anchors > c->max_anchors)
         return fail_relation(c, "start_anchors", "max_anchors", "at most max_anchors to start with", error);
-    if (c->freeze_from < c->round_from)
-        return fail_relation(c, "freeze_from", "round_from", "freeze_from not before round_from", error);
+    if (c->freeze_start < c->quant_round_start)
+        return fail_relation(c, "freeze_start", "quant_round_start", "freeze_start not before quant_round_start", error);
     return ADCGS_OK;
 }
 
@@ -272,7 +290,7 @@ static void list_one(const adcgs_setting *s, const adcgs_train_config *c, FILE *
     for (int i = 0; i < 4; i++)
         if (s->trades & 1 << i)
             trades[i] = letters[i];
-    fprintf(file, "  %-17s %-8s %s  %s (%s to %s)\n", s->name, adcgs_setting_print(s, adcgs_setting_get(s, c), value), trades,
+    fprintf(file, "  %-26s %-8s %s  %s (%s to %s)\n", s->name, adcgs_setting_print(s, adcgs_setting_get(s, c), value), trades,
             s->help, adcgs_setting_print(s, s->min, min), adcgs_setting_print(s, s->max, max));
 }
 

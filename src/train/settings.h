@@ -54,6 +54,12 @@ typedef struct adcgs_setting {
 
 /** The table, terminated by a name of NULL. */
 extern const adcgs_setting adcgs_settings[];
+/** A former name of a setting. --set understands it for one release. */
+typedef struct adcgs_setting_former {
+    const char *name, *now;
+} adcgs_setting_former;
+/** Former names, terminated by a name of NULL. */
+extern const adcgs_setting_former adcgs_settings_former[];
 /** Names of the presets, NULL-terminated, the fastest first. */
 extern const char *const adcgs_train_presets[];
 
@@ -61,8 +67,10 @@ extern const char *const adcgs_train_presets[];
 #define ADCGS_SETTING_NAMES 120
 /** The names that adcgs_train_set() accepts, NULL-terminated. */
 void adcgs_setting_names(const char *names[ADCGS_SETTING_NAMES + 1]);
-/** Finds the row of a name; NULL if there is none. Names used by the program itself always exist. */
+/** Finds the row of a name, or of a former name; NULL if there is none. Names used by the program itself always exist. */
 const adcgs_setting *adcgs_setting_find(const char *name);
+/** Finds the next former name in a list for adcgs_train_set(), and moves *list behind its entry; NULL if there is none. */
+const adcgs_setting_former *adcgs_setting_next_former(const char **list);
 double adcgs_setting_get(const adcgs_setting *setting, const adcgs_train_config *config);
 /** Sets a value, which must be valid, without marking it as set by the user. */
 void adcgs_setting_put(const adcgs_setting *setting, adcgs_train_config *config, double value);

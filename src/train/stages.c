@@ -45,11 +45,11 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
     const adcgs_train_config *c = &t->config;
     if (progress >= adcgs_train_lambda_from(c))
         t->lambda_used = 1;
-    if (!t->rested && progress >= c->rate_from && !c->without_densification) {
+    if (!t->rested && progress >= c->rate_start && !c->without_densification) {
         t->rested = 1;
         ADCGS_TRY(adcgs_rest_unchanging(t, error));
     }
-    if (!t->weighed && progress >= c->decide_at && !c->without_rate) { /* motion is found late, so not before decide_at */
+    if (!t->weighed && progress >= c->prune_at && !c->without_rate) { /* motion is found late, so not before prune_at */
         t->weighed = 1;
         if (t->iteration >= WEIGH_AFTER)
             ADCGS_TRY(adcgs_weigh_motion(t, error));
@@ -60,19 +60,19 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
         if (t->iteration >= ADCGS_UNITS_AFTER)
             ADCGS_TRY(adcgs_prune_units(t, error));
     }
-    if (!t->decided && progress >= c->decide_at) {
+    if (!t->decided && progress >= c->prune_at) {
         t->decided = 1;
         if (!c->without_densification)
             ADCGS_TRY(adcgs_decide(t, error));
     }
-    if (!t->tiered && progress >= c->tiers_from && t->decided && !t->f->follows) {
+    if (!t->tiered && progress >= c->tiers_start && t->decided && !t->f->follows) {
         t->tiered = 1;
         ADCGS_TRY(adcgs_tiers_assign(t, error));
     }
     if (!t->quantise || c->without_rounding)
         return ADCGS_OK;
     const adcgs_quantise_options means = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor };
-    if (!t->rounding && progress >= c->round_from) {
+    if (!t->rounding && progress >= c->quant_round_start) {
         ADCGS_TRY(round_values(t, error));
         adcgs_level_densities(t);
         ADCGS_TRY(t->quantise(t->f, &means, error));
@@ -80,7 +80,7 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
     } else if (t->rounding && !t->frozen && t->iteration % MEANS_EVERY == 0) {
         ADCGS_TRY(t->quantise(t->f, &means, error));
     }
-    if (t->frozen || !t->rounding || progress < c->freeze_from)
+    if (t->frozen || !t->rounding || progress < c->freeze_start)
         return ADCGS_OK;
     take_average(t);
     ADCGS_TRY(adcgs_rate_target_steps(t, 0, error));
@@ -126,8 +126,8 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
     t->torn = 1;
     adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);
     ADCGS_TRY(adcgs_release_step(t, progress, error));
-    const int grows = !c->without_densification && t->iteration && t->iteration % c->densify_every == 0 &&
-                      progress >= c->densify_from && progress < c->densify_until;
+    const int grows = !c->without_densification && t->iteration && t->iteration % c->densify_interval == 0 &&
+                      progress >= c->densify_start && progress < c->densify_until;
     if (grows)
         ADCGS_TRY(adcgs_densify(t, progress, error));
     const uint32_t at = t->iteration;

@@ -337,7 +337,7 @@ adcgs_status adcgs_start_points_find(adcgs_start_points *c, const adcgs_scene *s
 
 float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *found)
 {
-    return (found->film ? FILM_LIVES : 1) * config->span_moments * fmaxf(adcgs_stereo_spacing(found), SPACING_LEAST);
+    return (found->film ? FILM_LIVES : 1) * config->lifetime_frames * fmaxf(adcgs_stereo_spacing(found), SPACING_LEAST);
 }
 
 /** True if the median moving point moves far, in a scene of one moving camera. */
@@ -364,7 +364,7 @@ static void set_lives(adcgs_stereo *found, const adcgs_train_config *config)
     const float half = adcgs_half_life(config, found);
     for (uint32_t i = 0; i < found->n_moving; i++) {
         adcgs_stereo_point *p = &found->moving[i];
-        const int ends = config->span_ends && !p->body;
+        const int ends = config->lifetime_trim && !p->body;
         const float before = ends && p->end[0] > 0 ? fminf(p->end[0], half) : half;
         const float behind = ends && p->end[1] > 0 ? fminf(p->end[1], half) : half;
         p->life = 0.5f * (before + behind);
@@ -378,7 +378,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene
     int matched = 0, whole = 0, far = 1;
     const int given = has_points(scene);
     adcgs_stereo_options options = { .still = 0 };
-    if (config->stereo && (!given || config->params.spans)) {
+    if (config->matching_frames && (!given || config->params.spans)) {
         ADCGS_TRY(adcgs_stereo_applies(scene, &matched, error));
         ADCGS_TRY(adcgs_stereo_applies(scene->whole ? scene->whole : scene, &whole, error));
     }
@@ -386,7 +386,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene
         config->start_anchors = ADCGS_MAX(config->start_anchors, (uint32_t)(START_SHARE * config->max_anchors));
     if (matched && !known) {
         options.still = (uint32_t)(MATCHED_SHARE * config->start_anchors);
-        options.moments = config->stereo;
+        options.moments = config->matching_frames;
         options.judges = config->judges_poses;
         options.bodies = config->params.spans ? config->params.bodies : 0;
         options.moving = config->params.spans ? MOVING_MOST : (uint32_t)(MOVING_SHARE * options.still);
@@ -397,7 +397,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene
     if (found->film && !found->n_bodies)
         ADCGS_TRY(goes_far(found, &far, error));
     /* All segments of a stream have the same parameters, so a part's parameters cannot depend on its own content. */
-    if (config->stereo && !(scene->whole ? whole : far && found->n_moving))
+    if (config->matching_frames && !(scene->whole ? whole : far && found->n_moving))
         config->params.spans = 0;
     if (!scene->whole || !config->params.spans || !whole)
         config->params.bodies = (uint8_t)found->n_bodies;

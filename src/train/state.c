@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-#define SQUARE_ALONE 0.5f /* maximum square_weight if one camera sees each frame */
+#define SQUARE_ALONE 0.5f /* maximum l2_share if one camera sees each frame */
 
 static size_t slots_of(const adcgs_fmodel *f)
 {
@@ -52,7 +52,7 @@ adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
     if (!numbers)
         return adcgs_alloc_status(error);
     t->stats = adcgs_train_stats_at(numbers, t->f);
-    return t->config.rigid_weight > 0 ? adcgs_rigidity_build(&t->rigid, t->f, t->pool, error) : ADCGS_OK;
+    return t->config.rigidity_weight > 0 ? adcgs_rigidity_build(&t->rigid, t->f, t->pool, error) : ADCGS_OK;
 }
 
 float adcgs_trainer_time(const adcgs_trainer *t, double seconds)
@@ -142,13 +142,13 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
      * frames that it cannot explain. With several cameras, one frame suffices.
      */
     const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
-    if (several && !c->own_rigid)
-        c->rigid_weight = 0;
+    if (several && !c->own_rigidity)
+        c->rigidity_weight = 0;
     /* In static scenes that cameras filmed from inside, small primitives leave holes early in training, which then stay. */
-    if (several && times > 1 && !c->own_scale_from)
-        c->scale_from = 0;
-    if (!several && times > 1 && !c->own_square)
-        c->square_weight = fminf(c->square_weight, SQUARE_ALONE);
+    if (several && times > 1 && !c->own_scale_reg_start)
+        c->scale_reg_start = 0;
+    if (!several && times > 1 && !c->own_l2_share)
+        c->l2_share = fminf(c->l2_share, SQUARE_ALONE);
     if (c->without_coarse)
         c->shape.omega_width = 0;
     if (c->without_fine)

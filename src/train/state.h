@@ -126,7 +126,7 @@ typedef struct adcgs_trainer {
     adcgs_buffer snapshot;
     uint32_t snapshot_at;    /* its iteration */
     int torn;                /* 1: the state is between two steps of a change; only the snapshot is consistent */
-    adcgs_buffer begin;      /* in checkpoints, too: state at rate_from, while the run may return; see rate_search.h */
+    adcgs_buffer begin;      /* in checkpoints, too: state at rate_start, while the run may return; see rate_search.h */
 } adcgs_trainer;
 
 /** ADCGS_ERR_USAGE for a configuration that does not pass adcgs_train_check(). */

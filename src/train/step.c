@@ -117,9 +117,9 @@ static void update(adcgs_trainer *t, double progress)
 static int averages(const adcgs_trainer *t, double progress)
 {
     const adcgs_train_config *c = &t->config;
-    const double freeze = t->quantise && !c->without_rounding ? fmin((double)c->freeze_from, 1) : 1;
-    const double begin = t->frozen ? freeze : freeze < 1 ? (double)c->round_from : 0, end = t->frozen ? 1 : freeze;
-    return progress >= end - fmin((double)c->average_last, (end - begin) / 2);
+    const double freeze = t->quantise && !c->without_rounding ? fmin((double)c->freeze_start, 1) : 1;
+    const double begin = t->frozen ? freeze : freeze < 1 ? (double)c->quant_round_start : 0, end = t->frozen ? 1 : freeze;
+    return progress >= end - fmin((double)c->average_share, (end - begin) / 2);
 }
 
 /** Updates running means of the view passes' results, over few iterations at first, over many later. */

@@ -9,7 +9,7 @@
 
 int adcgs_coarse_divide(const adcgs_train_config *c, double progress)
 {
-    return progress < (double)c->quarter_until ? 4 : progress < (double)c->half_until ? 2 : 1;
+    return progress < (double)c->quarter_size_until ? 4 : progress < (double)c->half_size_until ? 2 : 1;
 }
 
 static int level_of(int divide)
@@ -55,8 +55,9 @@ static double count_until(const adcgs_train_config *c, double fraction)
 
 double adcgs_time_left_of(const adcgs_time_left *left, const adcgs_train_config *c, uint32_t iteration, double elapsed)
 {
-    const double quarter = count_until(c, (double)c->quarter_until);
-    const double ends[ADCGS_TIME_LEFT_LEVELS] = { c->iterations, fmax(count_until(c, (double)c->half_until), quarter), quarter };
+    const double quarter = count_until(c, (double)c->quarter_size_until);
+    const double ends[ADCGS_TIME_LEFT_LEVELS] = { c->iterations, fmax(count_until(c, (double)c->half_size_until), quarter),
+                                                 quarter };
     double seconds = 0, at = iteration;
     for (int level = ADCGS_TIME_LEFT_LEVELS - 1; level >= 0; level--) {
         if (ends[level] <= at)

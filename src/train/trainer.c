@@ -155,8 +155,8 @@ adcgs_status adcgs_trainer_finish(adcgs_trainer *t, adcgs_train_report *report, 
 
 int adcgs_trainer_moves(const adcgs_trainer *t)
 {
-    return t->f->follows || t->stereo.n_bodies || t->scene->n_times < 2 || t->config.deform_from >= 1 ||
-           (t->config.without_coarse && t->config.without_fine) || adcgs_trainer_progress(t) >= (double)t->config.deform_from;
+    return t->f->follows || t->stereo.n_bodies || t->scene->n_times < 2 || t->config.deform_start >= 1 ||
+           (t->config.without_coarse && t->config.without_fine) || adcgs_trainer_progress(t) >= (double)t->config.deform_start;
 }
 
 /** Updates the elapsed time. With a time limit all runs of a team use the time of rank 0, so that progress is the same. */

@@ -97,14 +97,14 @@ static void shrink(adcgs_train_config *c, const adcgs_scene *scene)
     if (half < 1)
         return;
     c->scale = ADCGS_MIN(c->scale * half, 64);
-    c->half_until = 2;
+    c->half_size_until = 2;
 }
 
 static adcgs_train_config trial_config(const adcgs_train_config *config, const adcgs_scene *scene, uint64_t seed)
 {
     adcgs_train_config c = *config;
     c.iterations = adcgs_trial_length(config);
-    c.densify_every = ADCGS_MAX(c.iterations / DENSIFICATIONS, 1);
+    c.densify_interval = ADCGS_MAX(c.iterations / DENSIFICATIONS, 1);
     c.time_limit = 0;
     c.target = ADCGS_TARGET_NONE;
     c.judges_poses = 0;
@@ -152,7 +152,7 @@ static adcgs_status run_trial(score *out, const adcgs_train_config *config, tria
     adcgs_trainer *t;
     int stopped;
     /* Matching gives other results without lifetimes or bodies. */
-    const int same = config->stereo && config->params.spans == r->config->params.spans &&
+    const int same = config->matching_frames && config->params.spans == r->config->params.spans &&
                      config->params.bodies == r->config->params.bodies;
     adcgs_stereo *const matched = first || !same ? NULL : &r->matched;
     ADCGS_TRY(adcgs_trainer_create_matched(&t, r->scene, config, matched, r->o->cpu, r->o->pool, error));

@@ -12,7 +12,7 @@
 static adcgs_status load_pictures(adcgs_trainer *t, int divide, adcgs_error *error)
 {
     adcgs_glance *own = NULL;
-    if (t->config.retime_doubled && !t->glances && !(own = adcgs_alloc(NULL, t->n_views, sizeof *own, error)))
+    if (t->config.retime_duplicates && !t->glances && !(own = adcgs_alloc(NULL, t->n_views, sizeof *own, error)))
         return adcgs_alloc_status(error);
     adcgs_glance *const glances = own ? own : t->glances;
     const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
@@ -68,7 +68,7 @@ adcgs_status adcgs_trainer_loss(adcgs_trainer *t, uint32_t view, const float *ta
     const adcgs_view *v = &t->views[view].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
     const uint8_t *const hidden = adcgs_pictures_hidden(t->pictures, view);
-    const adcgs_loss_shares shares = { t->config.ssim_weight, t->config.square_weight };
+    const adcgs_loss_shares shares = { t->config.ssim_weight, t->config.l2_share };
     size_t known = plane;
     ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->width, v->height, &shares, t->grad, value, error));
     for (size_t i = 0; hidden && i < plane; i++) {
@@ -109,7 +109,7 @@ adcgs_status adcgs_trainer_loss_crop(adcgs_trainer *t, uint32_t view, const adcg
     const adcgs_view *v = &t->views[view].view;
     const size_t wide = (size_t)v->width, w = (size_t)crop->width, h = (size_t)crop->height;
     const size_t x = (size_t)lrintf(v->cx - crop->cx), y = (size_t)lrintf(v->cy - crop->cy);
-    const adcgs_loss_shares shares = { t->config.ssim_weight, t->config.square_weight };
+    const adcgs_loss_shares shares = { t->config.ssim_weight, t->config.l2_share };
     for (size_t c = 0; c < 3; c++) /* in place: writes never pass the reads */
         for (size_t j = 0; j < h; j++)
             memmove(t->taken + (c * h + j) * w, t->taken + (c * (size_t)v->height + y + j) * wide + x, w * sizeof(float));

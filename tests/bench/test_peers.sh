@@ -74,7 +74,7 @@ add=
 for name in $tables ply draco; do
     add="$add${add:+,}$name=$out/$name.csv"
 done
-./adcgs-sweep "$dir/scene" -o "$dir/sweep" -l 1 -p draft -n 20 --set stereo=0 --yardsticks none --add "$add" -q >"$dir/out" \
+./adcgs-sweep "$dir/scene" -o "$dir/sweep" -l 1 -p draft -n 20 --set matching_frames=0 --yardsticks none --add "$add" -q >"$dir/out" \
     2>"$dir/err" || { bad "adcgs-sweep --add"; cat "$dir/err"; }
 for name in $tables ply draco; do
     grep -q "^$name,.*,$(cell "$out/$name.csv" bytes)," "$dir/sweep/sweep.csv" ||
@@ -82,11 +82,11 @@ for name in $tables ply draco; do
 done
 
 # ---- A static scene with points: the stand-in for OpenSplat writes this project's splats ----
-./adcgs-demo-scene --scene tiny --moments 1 --format ppm -o "$dir/still" -q || bad "adcgs-demo-scene"
+./adcgs-demo-scene --scene tiny --frames 1 --format ppm -o "$dir/still" -q || bad "adcgs-demo-scene"
 ./adcgs-info "$dir/s.adcgs" --points "$dir/still/points.ply" >/dev/null || bad "adcgs-info --points"
 sed 's/^{/{ "ply_file_path": "points.ply",/' "$dir/still/transforms_train.json" >"$dir/with" &&
     mv "$dir/with" "$dir/still/transforms_train.json"
-./adcgs-enc "$dir/still" -o "$dir/t.adcgs" --preset draft --set stereo=0 -n 40 --threads 2 -q || bad "adcgs-enc"
+./adcgs-enc "$dir/still" -o "$dir/t.adcgs" --preset draft --set matching_frames=0 -n 40 --threads 2 -q || bad "adcgs-enc"
 ./adcgs-dec "$dir/t.adcgs" --splats "$dir/ours.ply" -q || bad "adcgs-dec --splats"
 mkdir "$dir/bin"
 cat >"$dir/bin/opensplat" <<'END'

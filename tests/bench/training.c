@@ -55,10 +55,10 @@ static adcgs_train_config steady(const char *preset, uint32_t anchors)
     bench_check(adcgs_train_preset(&c, preset, &error), &error);
     c.iterations = 1000000;
     c.start_anchors = c.max_anchors = anchors;
-    c.quarter_until = (float)YOUTH / (float)c.iterations;
-    c.curriculum_until = c.half_until = c.scale_from = 0;
-    c.deform_from = c.fine_from = c.noise_from = c.rate_from = c.densify_from = c.densify_until = 0;
-    c.prune_units_at = c.decide_at = c.round_from = c.freeze_from = 2;
+    c.quarter_size_until = (float)YOUTH / (float)c.iterations;
+    c.curriculum_until = c.half_size_until = c.scale_reg_start = 0;
+    c.deform_start = c.fine_start = c.quant_noise_start = c.rate_start = c.densify_start = c.densify_until = 0;
+    c.prune_units_at = c.prune_at = c.quant_round_start = c.freeze_start = 2;
     return c;
 }
 
@@ -147,9 +147,9 @@ static void write_stream(training *r, adcgs_pool *pool, adcgs_buffer *out)
 {
     adcgs_stream stream;
     adcgs_error error = { .status = ADCGS_OK };
-    r->t->config.round_from = 0;
+    r->t->config.quant_round_start = 0;
     iterate(r, ROUNDED);
-    r->t->config.freeze_from = 0;
+    r->t->config.freeze_start = 0;
     iterate(r, ROUNDED);
     bench_check(adcgs_encode_stream(&stream, r->t, NULL, 0, &error), &error);
     bench_check(adcgs_encode_verified(&stream, out, r->t->cpu, pool, &error), &error);

@@ -24,7 +24,7 @@ tiny_stream()
 {
     tiny_scene "$dir/scene"
     # Start from random points: with matched points so short a run would leave no large splats. f_g gives the stream layers.
-    ./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --set stereo=0,n_fg=8 --iterations "$1" --threads 2 >"$dir/out" 2>&1 ||
+    ./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --set matching_frames=0,n_fg=8 --iterations "$1" --threads 2 >"$dir/out" 2>&1 ||
         { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
 }
 

@@ -74,7 +74,7 @@ expect 2 "not on an arc" ./adcgs-demo-scene --scene sweep --aside 0.1 -o "$dir/n
 ./adcgs-demo-scene --list >"$dir/list"
 while read -r name about; do
     case $name in dome*) format=png ;; *) format=ppm ;; esac
-    ./adcgs-demo-scene --scene "$name" --size 8x8 --moments 2 --format $format -o "$dir/some" -q || bad "$name: $about"
+    ./adcgs-demo-scene --scene "$name" --size 8x8 --frames 2 --format $format -o "$dir/some" -q || bad "$name: $about"
     rm -rf "$dir/some"
 done <"$dir/list"
 [ $failed -eq 0 ]

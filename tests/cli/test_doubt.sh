@@ -11,7 +11,7 @@ learn()
 {
     name=$1
     shift
-    ./adcgs-demo-scene --scene cross20 --size 64x64 --moments 12 --format ppm -o "$dir/$name" -q "$@" || bad "adcgs-demo-scene $*"
+    ./adcgs-demo-scene --scene cross20 --size 64x64 --frames 12 --format ppm -o "$dir/$name" -q "$@" || bad "adcgs-demo-scene $*"
     ./adcgs-enc "$dir/$name" -o "$dir/$name.adcgs" --iterations ${iterations:-400} --threads 2 ${quiet:-} >"$dir/out" 2>"$dir/$name.err" ||
         bad "adcgs-enc of $name"
 }
@@ -41,7 +41,7 @@ grep -q "but not if all poses are inverted: check whether matrices map world to 
 iterations=
 learn few --cameras 2
 grep -q "filmed by 2 cameras: other viewpoints are unreliable" "$dir/few.err" || { bad "nothing of few cameras"; cat "$dir/few.err"; }
-learn four --cameras 4 --moments 48 # more views than are measured; cameras take turns
+learn four --cameras 4 --frames 48 # more views than are measured; cameras take turns
 grep "filmed by" "$dir/four.err" && bad "four cameras are not seen"
 quiet=-q
 learn quiet --spoil wrongpose=30

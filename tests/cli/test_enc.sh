@@ -172,13 +172,13 @@ differ own whole "lambda changes nothing"
 # shellcheck disable=SC2086
 expect 4 "other options" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --seed 2 --resume "$dir/begin"
 expect 2 "lambda has no effect" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --without rate
-expect 2 "lambda has no effect" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1,prune_units_at=1
+expect 2 "lambda has no effect" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_start=1,prune_units_at=1
 expect 2 "either -o FILE or --beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" -o "$dir/x.adcgs"
 
 # Stages left out. A stream contains nothing that the scene does not need.
 # After so few iterations motion develops only if anchors are not tied to their neighbours.
 n=60
-free="--set rigid_weight=0,still_below=0"
+free="--set rigidity_weight=0,static_threshold=0"
 networks() { ./adcgs-info "$dir/$1.adcgs" --json | tr -d '\n'; }
 for stage in coarse fine deformation rate densification; do
     enc "$stage" --iterations $n $free --without $stage
@@ -241,11 +241,12 @@ expect 2 "why excludes other" ./adcgs-info --why --bytes 20k -o "$dir/x.adcgs" "
 grep -q "encoder stored no reasons" "$dir/why" || { bad "reasons that nobody gave"; cat "$dir/why"; }
 
 # Time steps, cameras and noise of a built-in scene: the number of images, and noise of the given strength in training views only.
-expect 2 "moments" ./adcgs-demo-scene --scene tiny --moments 0 -o "$dir/none"
+expect 2 "frames" ./adcgs-demo-scene --scene tiny --frames 0 -o "$dir/none"
+expect 0 "moments is now called --frames" ./adcgs-demo-scene --scene tiny --size 8x8 --moments 1 --format ppm -o "$dir/former"
 expect 2 "cameras" ./adcgs-demo-scene --scene tiny --cameras 1001 -o "$dir/none"
 expect 2 "multiple" ./adcgs-demo-scene --scene tiny --cameras 5 -o "$dir/none"
 expect 2 "noise" ./adcgs-demo-scene --scene tiny --noise 65 -o "$dir/none"
-./adcgs-demo-scene --scene tiny --moments 16 --cameras 9 --format ppm -o "$dir/many" -q || bad "--moments and --cameras"
+./adcgs-demo-scene --scene tiny --frames 16 --cameras 9 --format ppm -o "$dir/many" -q || bad "--frames and --cameras"
 [ "$(find "$dir/many/train" -name '*.ppm' | wc -l)" -eq 48 ] || bad "not three images of each of sixteen time steps"
 ./adcgs-demo-scene --scene tiny --noise 8 --format ppm -o "$dir/noisy" -q || bad "noise"
 levels() { tail -c 12288 "$1" | od -An -v -tu1 -w1; }
@@ -258,6 +259,11 @@ cmp -s "$scene/test/r_000.ppm" "$dir/noisy/test/r_000.ppm" || bad "noise in the 
 ./adcgs-demo-scene --scene still --size 48x48 --format ppm -o "$dir/rest" >/dev/null 2>&1
 scene=$dir/rest enc rest --iterations 2400 --max-anchors 200
 networks rest | grep -q 'F_omega\|F_varpi\|"Z"' && bad "deformation networks for a motionless scene"
+
+# Former names of settings are understood, with a remark.
+expect 0 "setting 'still_below' is now called 'static_threshold'" ./adcgs-enc "$scene" -o "$dir/former.adcgs" --preset draft \
+    --max-anchors 50 -n 10 --set still_below=0 --threads 2
+./adcgs-info --json "$dir/former.adcgs" | grep -q static_threshold=0 || bad "a former name is stored"
 
 # Wrong usage and bad input: one line, the right exit code, no output.
 try="./adcgs-enc $scene -o $dir/x.adcgs"

@@ -29,11 +29,11 @@ enc="./adcgs-enc $dir/wide -o $dir/wide.adcgs --preset draft -n 10 --threads 2"
 width() { ./adcgs-eval "$dir/wide.adcgs" "$dir/wide" --images "$dir/wide/seen" "$@" >"$dir/out" 2>"$dir/err" || bad "adcgs-eval $*"
           od -An -tu1 -j 16 -N 4 "$dir"/wide/seen/0000-*.png | awk '{ print $3 * 256 + $4 }'; }
 ./adcgs-demo-scene --scene tiny --size 1601x12 --format ppm -o "$dir/wide" -q || bad "adcgs-demo-scene --size 1601x12"
-expect 0 'images of 1601 pixels are reduced to 1/2 of that; --scale 1 keeps' $enc --set stereo=0
+expect 0 'images of 1601 pixels are reduced to 1/2 of that; --scale 1 keeps' $enc --set matching_frames=0
 [ "$(width)" = 801 ] && grep -q 'measured on the same' "$dir/err" || { bad "measured on other pictures"; cat "$dir/err"; }
 [ "$(width --scale 1)" = 1601 ] && [ "$(width --scale 4)" = 401 ] || bad "--scale of adcgs-eval"
 ./adcgs-info "$dir/wide.adcgs" --why | grep -q 'settings .*scale=2' || bad "the stream does not give the scale of images"
-for own in "--set stereo=0 --scale 1" "--set stereo=0,scale=1"; do
+for own in "--set matching_frames=0 --scale 1" "--set matching_frames=0,scale=1"; do
     expect 0 '' $enc $own -q
     [ "$(width)" = 1601 ] && [ ! -s "$dir/err" ] || { bad "reduced in spite of $own"; cat "$dir/err"; }
 done
@@ -68,7 +68,7 @@ expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/plain.csv" --json
 agree "$dir/plain.csv" "$dir/out"
 
 # --tiers gives the same as a file that ends before the next tier. A number above that of the stream's tiers means all.
-./adcgs-enc "$dir/scene" -o "$dir/t.adcgs" --preset draft --set tiers=3,stereo=0 --iterations 30 --threads 2 >/dev/null 2>&1
+./adcgs-enc "$dir/scene" -o "$dir/t.adcgs" --preset draft --set tiers=3,matching_frames=0 --iterations 30 --threads 2 >/dev/null 2>&1
 ends=$(./adcgs-info --json "$dir/t.adcgs" | grep -A 2 '"type": "GEOM"' | sed -n 's/.*"offset": \([0-9]*\),.*/\1/p' | sed -n 2p)
 head -c "${ends:-0}" "$dir/t.adcgs" >"$dir/cut.adcgs"
 figures() { $eval "$@" "$dir/scene" --csv - -q | cut -d, -f 1-6 >"$dir/figures" && [ "$(wc -l <"$dir/figures")" -eq 5 ]; }

@@ -8,7 +8,7 @@ need adcgs-enc adcgs-dec adcgs-eval adcgs-info adcgs-demo-scene
 n=600
 scene=$dir/scene
 tiny_scene "$scene"
-run="./adcgs-enc $scene --preset draft --max-anchors 300 --set stereo=0 --iterations $n"
+run="./adcgs-enc $scene --preset draft --max-anchors 300 --set matching_frames=0 --iterations $n"
 
 # shows FILE DB: a file has no faults, and the PSNR of its test views is at least DB.
 shows()
@@ -129,7 +129,7 @@ awk '/"file_path"/ { on = 1; one = "" }
     "$scene/transforms_test.json" >"$many/transforms_test.json"
 for try in 1 2 3; do
     rm -f "$dir/many.adcgs"
-    ./adcgs-enc "$many" -o "$dir/many.adcgs" --preset draft --set stereo=0 --iterations 10 >"$dir/out" 2>"$dir/err" &
+    ./adcgs-enc "$many" -o "$dir/many.adcgs" --preset draft --set matching_frames=0 --iterations 10 >"$dir/out" 2>"$dir/err" &
     pid=$!
     while kill -0 $pid 2>/dev/null && [ ! -e "$dir/many.adcgs" ]; do sleep 0.02; done
     kill -TERM $pid 2>/dev/null

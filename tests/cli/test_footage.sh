@@ -17,7 +17,7 @@ film()
 # look NAME: train the scene for a few iterations; the encoder's messages go to $dir/NAME.err.
 look()
 {
-    ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --preset draft --set stereo=${moments:-0} -n 10 --threads 2 ${quiet:-} ${even:-} >"$dir/out" \
+    ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --preset draft --set matching_frames=${moments:-0} -n 10 --threads 2 ${quiet:-} ${even:-} >"$dir/out" \
         2>"$dir/$1.err" ||
         { bad "adcgs-enc of $1"; cat "$dir/$1.err"; }
 }
@@ -80,7 +80,7 @@ says step 'the images of all cameras become 0.87 times as bright: check exposure
 film tint --scene cross20 --spoil tint=0.4
 says tint 'the images of all cameras become 0.87 times as blue relative to green: check white balance and light'
 size=64x64
-film sync --scene clip --moments 60 --cameras 4
+film sync --scene clip --frames 60 --cameras 4
 silent sync
 late sync 1 2
 says sync 'train/r_001.ppm: its camera appears 2 frames later than others: check synchronisation'
@@ -95,7 +95,7 @@ says pose 'pose: matched points of cameras lie 1.[0-9] pixels apart (median): ch
 moments=0
 evened()
 {
-    even=--set=even_light=1
+    even=--set=exposure_step_compensation=1
     look "$1"
     [ "$(grep -c -- "$2" "$dir/$1.err")" -eq 1 ] || { bad "not once \"$2\" of $1"; cat "$dir/$1.err"; }
     grep "check exposure\|check white" "$dir/$1.err" && bad "what was evened in $1 is a doubt"
@@ -103,18 +103,18 @@ evened()
 }
 evened step 'the images of all cameras become 0.87 times as bright: this and all other steps of light are evened out'
 evened tint 'the images of all cameras become 0.87 times as blue relative to green: this and all other steps of light are evened out'
-evened sync 'sync: even_light: no steps of light found'
+evened sync 'sync: exposure_step_compensation: no steps of light found'
 even=
 # Segments are cut from a scene whose steps are removed already: one report, with the same text.
-./adcgs-enc "$dir/step" -o "$dir/cut.adcgs" --preset draft --set stereo=0,even_light=1 --segment 0.3 -n 10 --threads 2 2>"$dir/cut.err" ||
-    { bad "segments with even_light"; cat "$dir/cut.err"; }
+./adcgs-enc "$dir/step" -o "$dir/cut.adcgs" --preset draft --set matching_frames=0,exposure_step_compensation=1 --segment 0.3 -n 10 --threads 2 2>"$dir/cut.err" ||
+    { bad "segments with exposure_step_compensation"; cat "$dir/cut.err"; }
 [ "$(grep -c 'steps of light are evened out' "$dir/cut.err")" -eq 1 ] || { bad "not told once of segments"; cat "$dir/cut.err"; }
 grep "check exposure\|check white" "$dir/cut.err" && bad "what was evened before it was cut is a doubt"
 # With --live there are no images at the start.
 code=0
-./adcgs-enc --live "$dir/step" -o "$dir/live.adcgs" --set even_light=1 2>"$dir/live.err" || code=$?
-{ [ $code -eq 2 ] && grep -q 'live: even_light needs all images' "$dir/live.err" && [ ! -e "$dir/live.adcgs" ]; } ||
-    { bad "even_light with --live: $code"; cat "$dir/live.err"; }
+./adcgs-enc --live "$dir/step" -o "$dir/live.adcgs" --set exposure_step_compensation=1 2>"$dir/live.err" || code=$?
+{ [ $code -eq 2 ] && grep -q 'live: exposure_step_compensation needs all images' "$dir/live.err" && [ ! -e "$dir/live.adcgs" ]; } ||
+    { bad "exposure_step_compensation with --live: $code"; cat "$dir/live.err"; }
 quiet=-q
 look step
 [ ! -s "$dir/step.err" ] || { bad "--quiet prints messages"; cat "$dir/step.err"; }

@@ -79,7 +79,7 @@ says() { grep -q -- "$1" "$dir/err" || { bad "$what: no word of \"$1\""; cat "$d
 # tiny NAME WxH MOMENTS CAMERAS: the tiny scene in $dir/NAME.
 tiny()
 {
-    ./adcgs-demo-scene --quiet --scene tiny --format ppm --size "$2" --moments "$3" --cameras "$4" -o "$dir/$1" ||
+    ./adcgs-demo-scene --quiet --scene tiny --format ppm --size "$2" --frames "$3" --cameras "$4" -o "$dir/$1" ||
         { bad "adcgs-demo-scene"; exit 1; }
 }
 
@@ -147,7 +147,7 @@ done
 # shellcheck disable=SC2086
 for by in 0 10 100; do
     either "all rates times $by" 15 "$scene" $short --set \
-        learn_features=$by,learn_prediction=$by,learn_motion=$by,learn_entropy=$by
+        lr_scale_anchors=$by,lr_scale_prediction=$by,lr_scale_motion=$by,lr_scale_entropy=$by
 done
 # shellcheck disable=SC2086
 {
@@ -162,27 +162,27 @@ done
     good "the least model" 15 "$scene" $short --k 1 --set \
         n_fg=0,n_fv=1,n_eta=0,theta_width=1,omega_width=0,varpi_width=0,entropy_width=1,time_rows=0,depth=4
     good "the shortest run" 14 "$scene" --max-anchors 100 --iterations 10
-    good "all stages at once" 18 "$scene" $short --set curriculum_until=0,rates_fall_from=0,quarter_until=0,half_until=0,\
-noise_from=0,rate_from=0,fine_from=0,prune_units_at=0,prune_units_again=0,decide_at=0,tiers_from=0,round_from=0,freeze_from=0
-    good "no stage ever" 15 "$scene" $short --set curriculum_until=2,rates_fall_from=2,quarter_until=2,half_until=2,\
-noise_from=2,rate_from=2,fine_from=2,prune_units_at=2,prune_units_again=2,decide_at=2,tiers_from=2,round_from=2,freeze_from=2
-    good "no threshold" 18 "$scene" $short --set densify_threshold=0,densify_every=1
+    good "all stages at once" 18 "$scene" $short --set curriculum_until=0,lr_decay_start=0,quarter_size_until=0,half_size_until=0,\
+quant_noise_start=0,rate_start=0,fine_start=0,prune_units_at=0,prune_units_again=0,prune_at=0,tiers_start=0,quant_round_start=0,freeze_start=0
+    good "no stage ever" 15 "$scene" $short --set curriculum_until=2,lr_decay_start=2,quarter_size_until=2,half_size_until=2,\
+quant_noise_start=2,rate_start=2,fine_start=2,prune_units_at=2,prune_units_again=2,prune_at=2,tiers_start=2,quant_round_start=2,freeze_start=2
+    good "no threshold" 18 "$scene" $short --set densify_threshold=0,densify_interval=1
     good "nothing but SSIM" 15 "$scene" $short --set ssim_weight=1
-    good "heavy penalties" 12 "$scene" $short --set rigid_weight=1000,scale_weight=1000,distortion_weight=1000,tier_weight=10
+    good "heavy penalties" 12 "$scene" $short --set rigidity_weight=1000,scale_reg_weight=1000,distortion_weight=1000,tier_weight=10
     refused "one iteration" 2 "--iterations 1: expected a whole number from 10" "$scene" --iterations 1
     refused "nothing may stay" 4 "training diverged at iteration .* check .*settings" "$scene" $short \
-        --set prune_opacity=1,keep_opacity=1
+        --set prune_opacity=1,min_mean_opacity=1
     refused "steps of everything" 4 "training diverged at iteration .* check .*settings" "$scene" $short \
         --set step_fv=10,step_fg=10,step_sigma=10,step_colour=10
-    refused "a rate that is no number" 2 "learn_motion=nan: expected a number" "$scene" $short --set learn_motion=nan
+    refused "a rate that is no number" 2 "lr_scale_motion=nan: expected a number" "$scene" $short --set lr_scale_motion=nan
     refused "lambda that is no number" 2 "lambda nan: expected" "$scene" $short --lambda nan
 }
 
 # Longer runs with several hostile settings each.
 # shellcheck disable=SC2086
 if [ -n "$ADCGS_FULL" ]; then
-    for settings in learn_motion=100 learn_prediction=100 learn_features=100 learn_entropy=100,step_fv=10 \
-        learn_motion=100,learn_prediction=100,learn_features=100,dropout=0.9 learn_features=10,learn_motion=10,lambda=1000; do
+    for settings in lr_scale_motion=100 lr_scale_prediction=100 lr_scale_anchors=100 lr_scale_entropy=100,step_fv=10 \
+        lr_scale_motion=100,lr_scale_prediction=100,lr_scale_anchors=100,dropout=0.9 lr_scale_anchors=10,lr_scale_motion=10,lambda=1000; do
         either "long: $settings" 15 "$scene" --max-anchors 100 --iterations 2000 --k 15 --set $settings
     done
     either "wide networks" 15 "$scene" --max-anchors 50 --iterations 30 --k 16 --set \

@@ -43,7 +43,7 @@ has '"up":"z","points":"points.ply"'
 plain | grep -q 'time_offset\|frame_rate' && bad "images of one time have times"
 called 'feature_extractor .*--ImageReader.single_camera_per_folder 1 .*--ImageReader.camera_model SIMPLE_RADIAL .*--SiftExtraction.use_gpu 0'
 called 'exhaustive_matcher .*--SiftMatching.use_gpu 0'
-expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
+expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q
 
 # A film: times, and every second frame if there are more than requested.
 import 0 '' --fps 10 --test 2 --lens opencv --threads 3 "$pictures"
@@ -85,7 +85,7 @@ cmp -s "$top/doc/demo.jpg" "$dir/s/images/camera1/upright.jpg" || bad "an uprigh
 import 0 '' --fps 10 --masks "$dir/masks" "$pictures"
 called '--ImageReader.mask_path'
 [ "$(plain | grep -o '"masks":' | wc -l)" -eq 1 ] || { bad "masks of the scene"; cat "$dir/s/scene.json"; }
-expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
+expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q
 { printf 'P6 4 16 255\n'; head -c 192 /dev/zero; } >"$dir/masks/$stem.ppm"
 import 4 'another aspect ratio' --fps 10 --masks "$dir/masks" "$pictures"
 rm "$dir"/masks/*
@@ -114,11 +114,11 @@ if grep -q '^neu3d-videos' "$dir/kinds"; then
             size="\"width\":24,\"height\":16,\"fx\":$((20 + i)),\"fy\":$((21 + i)),\"cx\":12,\"cy\":8"
             has "\"name\":\"cam0$i\",\"video\":\"videos/cam0$i.mp4\",$split$size,$lens\"k1\":0.01,"
         done
-        expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
+        expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q
         expect 0 '' ./adcgs-eval "$dir/s.adcgs" "$dir/s"
     done
     called 'default_focal_length_factor 0.4'
-    expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
+    expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q
     import 2 'not both' "$dir/neu3d-videos/cam03.mp4" "$pictures"
     import 2 'has times of its own' --fps 3 "$dir/neu3d-videos/cam03.mp4"
 else
@@ -183,10 +183,10 @@ for name in frame_1 other; do
     (cd "$colmap/images" && i=0 && for f in *; do mv "$f" "${name}0$i.ppm" && i=$((i + 1)); done)
     rm -rf "$colmap/sparse"
     "$fake" mapper --image_path "$colmap/images" --output_path "$colmap/sparse" >"$dir/out"
-    expect 0 'if they are frames of a video' ./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2
+    expect 0 'if they are frames of a video' ./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2
     mv "$colmap/images/${name}03.ppm" "$colmap/images/${name}09.ppm"
     sed -i "s/${name}03/${name}09/" "$colmap/sparse/0/images.txt"
-    ./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 2>&1 | grep 'frames of a video' &&
+    ./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 2>&1 | grep 'frames of a video' &&
         bad "a warning of images that are not numbered in order"
 done
 
@@ -195,22 +195,22 @@ done
 mkdir "$colmap/masks"
 { printf 'P6 24 16 255\n'; head -c 576 /dev/zero; head -c 576 /dev/zero | tr '\0' x; } >"$colmap/masks/other01.ppm"
 rm -f "$dir/plain.adcgs"
-./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q 2>"$dir/err" || { bad "masks"; cat "$dir/err"; }
+./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q 2>"$dir/err" || { bad "masks"; cat "$dir/err"; }
 cp "$dir/s.adcgs" "$dir/masked.adcgs"
 mv "$colmap/masks/other01.ppm" "$colmap/masks/other01.ppm.ppm"
-./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "masks with COLMAP's names"
+./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q || bad "masks with COLMAP's names"
 cmp -s "$dir/s.adcgs" "$dir/masked.adcgs" || bad "other result with COLMAP's names of masks"
 rm "$colmap"/masks/*
-./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "without masks"
+./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q || bad "without masks"
 cmp -s "$dir/s.adcgs" "$dir/masked.adcgs" && bad "a mask of a COLMAP scene has no effect"
 import 0 '' --fps 10 "$pictures"
 { printf 'P6 24 16 255\n'; head -c 576 /dev/zero; head -c 576 /dev/zero | tr '\0' x; } >"$dir/s/mask.ppm"
-./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "a scene file"
+./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q || bad "a scene file"
 sed -i 's/"fx"/"masks": "mask.ppm", "fx"/' "$dir/s/scene.json"
-./adcgs-enc "$dir/s" -o "$dir/t.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "masks of a scene file"
+./adcgs-enc "$dir/s" -o "$dir/t.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q || bad "masks of a scene file"
 cmp -s "$dir/s.adcgs" "$dir/t.adcgs" && bad "masks of a scene file have no effect"
 sed -i 's/mask.ppm/nowhere.ppm/' "$dir/s/scene.json"
-expect 3 'nowhere.ppm' ./adcgs-enc "$dir/s" -o "$dir/t.adcgs" --preset draft --set stereo=0 -n 10 --threads 2
+expect 3 'nowhere.ppm' ./adcgs-enc "$dir/s" -o "$dir/t.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2
 
 # COLMAP itself, on the table seen by cameras on an arc.
 if [ -z "${ADCGS_FULL:-}" ] || ! command -v colmap >/dev/null; then

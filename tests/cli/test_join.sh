@@ -7,7 +7,7 @@ need adcgs-enc adcgs-join adcgs-info adcgs-demo-scene tests/cli/edit-stream
 
 scene=$dir/scene plan=$dir/plan.json
 tiny_scene "$scene"
-short="--preset draft --iterations 20 --key 0.15 --lambda 0.08 --set square_weight=0.7,k=4,stereo=4 --no-progression"
+short="--preset draft --iterations 20 --key 0.15 --lambda 0.08 --set l2_share=0.7,k=4,matching_frames=4 --no-progression"
 # learn N OPTIONS...: train segment N of the plan.
 learn()
 {

@@ -43,7 +43,7 @@ for i in 0 1 2 3 4 5; do
     done
 done
 touch "$dir/wide/end"
-wide="--preset draft --max-anchors 50 -n 10 --set stereo=0 --segment 0.1"
+wide="--preset draft --max-anchors 50 -n 10 --set matching_frames=0 --segment 0.1"
 # shellcheck disable=SC2086
 {
     expect 0 'images of 1601 pixels are reduced to 1/2 of that; --scale 1 keeps' ./adcgs-enc --live "$dir/wide" -o "$dir/wide.adcgs" $wide

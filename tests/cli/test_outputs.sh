@@ -133,7 +133,7 @@ cmp "$dir/read.png" "$dir/straight.png" || bad "another image through a pipe"
 
 # A stream with the extension of a video.
 expect 0 "x.mp4: this file will hold an adcgs stream, not mp4" ./adcgs-enc "$dir/scene" -o "$dir/x.mp4" --preset draft \
-    --set stereo=0 --iterations 10
+    --set matching_frames=0 --iterations 10
 
 # One file for two outputs.
 ln -s two "$dir/links/also"

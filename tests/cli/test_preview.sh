@@ -6,7 +6,7 @@ need adcgs-enc adcgs-demo-scene
 
 scene=$dir/scene
 tiny_scene "$scene"
-run="./adcgs-enc $scene --preset draft --max-anchors 300 --set stereo=0 --iterations 60 --threads 2"
+run="./adcgs-enc $scene --preset draft --max-anchors 300 --set matching_frames=0 --iterations 60 --threads 2"
 
 # likeness FILE: PSNR in dB of the right half of a PPM against its left half.
 likeness()

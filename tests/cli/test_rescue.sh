@@ -6,7 +6,7 @@
 need adcgs-enc adcgs-demo-scene tests/cli/fail-nth
 scene=$dir/scene
 tiny_scene "$scene"
-run="./adcgs-enc $scene --preset draft --max-anchors 300 --set stereo=0 --iterations 12 --threads 2"
+run="./adcgs-enc $scene --preset draft --max-anchors 300 --set matching_frames=0 --iterations 12 --threads 2"
 
 # shellcheck disable=SC2086
 expect 0 "" $run -o "$dir/good.adcgs"

@@ -6,11 +6,11 @@ set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-demo-scene adcgs-enc adcgs-eval
 cat >"$dir/list" <<'END'
-without nothing --set stereo=48
+without nothing --set matching_frames=48
 without planted -n 40
 without absent --without no-such-part
-made one tiny --size 24x24 --moments 4
-made two tiny --size 16x16 --moments 2 // --set tiers=1
+made one tiny --size 24x24 --frames 4
+made two tiny --size 16x16 --frames 2 // --set tiers=1
 data nowhere no-such-folder
 END
 export ROBUST=$dir/robust ROBUST_LIST=$dir/list VERSION=test ITERATIONS=10 TRIALS=0 RATE=0 ADCGS_DATA=$dir
@@ -40,7 +40,7 @@ RATE=100 robust
 cmp -s "$table" "$dir/before" && bad "bytes do not count"
 
 # A failed run is reported, and fails.
-echo 'without wrong --set stereo=-1' >>"$dir/list"
+echo 'without wrong --set matching_frames=-1' >>"$dir/list"
 SCENES=two MECHANISMS=wrong robust && bad "a run that fails"
 grep -q 'FAILED: two, wrong, seed 1' "$dir/err" || { bad "no word of it"; cat "$dir/err"; }
 exit $failed

@@ -160,7 +160,7 @@ done
 expect 2 "needs --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --fade 1
 
 # Without detected motion there are no networks of motion. The time table, which all segments have, consists of zeros.
-enc rest --segment 0.1 --set still_below=1000000 --iterations 60
+enc rest --segment 0.1 --set static_threshold=1000000 --iterations 60
 ./adcgs-info "$dir/rest.adcgs" >"$dir/out"
 [ "$(grep -c '^  Z  *[1-9]' "$dir/out")" -eq 2 ] || { bad "segments without time tables"; cat "$dir/out"; }
 grep -q '2 segments' "$dir/out" && ! grep -q 'F_omega\|F_varpi' "$dir/out" || { bad "a scene at rest"; cat "$dir/out"; }

@@ -9,7 +9,7 @@ dec=$PWD/adcgs-dec
 # Two segments: 0 .. 0.1 s with three of eight frames and two tiers, and one that is predicted from it.
 tiny_scene "$dir/scene"
 s=$dir/s.adcgs
-./adcgs-enc "$dir/scene" -o "$s" --preset draft --max-anchors 300 --iterations 100 --set stereo=0,n_fg=8 --segment 0.1 --threads 2 \
+./adcgs-enc "$dir/scene" -o "$s" --preset draft --max-anchors 300 --iterations 100 --set matching_frames=0,n_fg=8 --segment 0.1 --threads 2 \
     >"$dir/out" 2>&1 || { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
 # at TYPE SEGMENT NTH: offset of a chunk.
 at()

@@ -8,13 +8,13 @@ need adcgs-enc adcgs-info adcgs-demo-scene
 scene=$dir/scene
 tiny_scene "$scene"
 # With this weight of the scale regulariser quality is lost in every trial.
-run="./adcgs-enc $scene --preset draft --max-anchors 150 --iterations 120 --threads 2 --set stereo=0,scale_weight=1000,trial_share=1"
+run="./adcgs-enc $scene --preset draft --max-anchors 150 --iterations 120 --threads 2 --set matching_frames=0,scale_reg_weight=1000,trial_share=1"
 
 # shellcheck disable=SC2086
 expect 0 'without scale_price [0-9]* held-out images have' $run -o "$dir/a.adcgs"
 expect 0 "" ./adcgs-info --why "$dir/a.adcgs"
 grep -q '^trials .* iterations=120 .*scale_price=' "$dir/out" || { bad "--why lists no trials"; cat "$dir/out"; }
-grep -q '^settings .*scale_weight=0' "$dir/out" || { bad "--why does not list the setting that is off"; cat "$dir/out"; }
+grep -q '^settings .*scale_reg_weight=0' "$dir/out" || { bad "--why does not list the setting that is off"; cat "$dir/out"; }
 [ "$(grep -c 'turned off' "$dir/err")" -eq 0 ] || bad "adcgs-info reports a trial"
 
 # A resumed run makes no trials, and writes the same bytes.

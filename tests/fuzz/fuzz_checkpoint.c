@@ -56,8 +56,8 @@ static void configure(adcgs_train_config *c, adcgs_error *error)
     c->iterations = ITERATIONS;
     c->start_anchors = c->max_anchors = 20;
     c->detail_anchors = 0;
-    c->densify_every = 10;
-    c->stereo = 0;
+    c->densify_interval = 10;
+    c->matching_frames = 0;
     c->params.k = 2;
     c->params.n_fv = 4;
     c->params.n_fg = 4;

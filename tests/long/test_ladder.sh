@@ -21,7 +21,7 @@ pair pair
 table table
 table-noise table --noise 6
 table-half table --size 80x80
-table-long table --moments 48
+table-long table --frames 48
 table-cameras table --cameras 24
 cross20 cross20
 several several

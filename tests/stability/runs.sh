@@ -4,7 +4,7 @@
 #   ITERATIONS  of training (default 800)
 stability=${STABILITY:-stability}
 iterations=${ITERATIONS:-800}
-common="--size 96x96 --moments 24 --watch 24 --format ppm --threads 1 -q"
+common="--size 96x96 --frames 24 --watch 24 --format ppm --threads 1 -q"
 
 # field N LINE: a field of a class.
 field() { printf '%s\n' "$2" | cut -d '|' -f "$1"; }

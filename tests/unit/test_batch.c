@@ -119,11 +119,11 @@ static adcgs_train_config run_config(uint32_t batch)
     adcgs_train_config c = small_config();
     c.iterations = 40;
     c.batch = batch;
-    c.densify_every = 7;
-    c.freeze_from = 0.92f;
-    c.average_last = 0.1f;
-    c.rigid_weight = 0.02f;
-    c.own_rigid = 1;
+    c.densify_interval = 7;
+    c.freeze_start = 0.92f;
+    c.average_share = 0.1f;
+    c.rigidity_weight = 0.02f;
+    c.own_rigidity = 1;
     c.distortion_weight = 0.001f;
     c.params.adaptive_steps = batch % 2;
     return c;

@@ -14,11 +14,11 @@ static adcgs_train_config config_for(adcgs_train_target target, double value)
     assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
     c.iterations = ITERATIONS;
     c.start_anchors = 100;
-    c.densify_every = 20;
-    c.stereo = 0; /* stereo would run again for each trainer; only the stream's size counts here */
+    c.densify_interval = 20;
+    c.matching_frames = 0; /* stereo would run again for each trainer; only the stream's size counts here */
     c.params.n_fg = 8; /* so that a size can be used up */
     c.densify_threshold = 1e-6f;
-    c.freeze_from = 0.92f; /* long enough to stop in */
+    c.freeze_start = 0.92f; /* long enough to stop in */
     c.target = target;
     c.target_value = value;
     return c;
@@ -225,7 +225,7 @@ static void runs_land_on_sizes(void **state)
 static void runs_land_without_rounding(void **state)
 {
     adcgs_train_config config = roomy_config(ADCGS_TARGET_SIZE, 12000);
-    config.round_from = config.freeze_from = 1.5f;
+    config.quant_round_start = config.freeze_start = 1.5f;
     adcgs_trainer *t = make(&config, real_bytes);
     run(t, NULL, NULL);
     print_message("target 12000 bytes, result %llu bytes\n", (unsigned long long)final_bytes(t));

@@ -250,7 +250,7 @@ static void doubled_pictures_are_of_the_time_before(void **state)
     (void)state;
     adcgs_train_view views[MOST];
     const adcgs_scene scene = {.duration = 24.0, .views = {film.views}, .n_views = {24}};
-    adcgs_trainer trainer = {.scene = &scene, .n_views = 24, .views = views, .config.retime_doubled = 1};
+    adcgs_trainer trainer = {.scene = &scene, .n_views = 24, .views = views, .config.retime_duplicates = 1};
     for (int pictures = 1; pictures <= 3; pictures++) {
         film_twice(pictures, 0.0, 2);
         assert_int_equal(adcgs_doubled_find(&trainer, film.glances, &error), ADCGS_OK);
@@ -260,7 +260,7 @@ static void doubled_pictures_are_of_the_time_before(void **state)
         }
         assert_int_equal(trainer.doubled.count, pictures > 1 ? 2 * pictures : 0);
     }
-    trainer.config.retime_doubled = 0;
+    trainer.config.retime_duplicates = 0;
     views[4].t = -1.0f;
     assert_int_equal(adcgs_doubled_find(&trainer, film.glances, &error), ADCGS_OK);
     assert_true(trainer.doubled.count == 6 && views[4].t < 0.0f);

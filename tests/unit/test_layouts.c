@@ -54,7 +54,7 @@ static void finish_start(start *s)
     adcgs_train_config config;
     expect_good(adcgs_train_preset(&config, "draft", &error));
     config.start_anchors = 60;
-    config.stereo = s->scene->splats && !getenv("ADCGS_FULL") ? 0 : 2; /* its hundred views take half a minute */
+    config.matching_frames = s->scene->splats && !getenv("ADCGS_FULL") ? 0 : 2; /* its hundred views take half a minute */
     assert_int_equal(adcgs_scene_frame(s->scene, s->origin, &s->scale, &error), ADCGS_OK);
     expect_good(adcgs_start_match(&s->found, 0, s->scene, &config, NULL, &error));
     expect_good(adcgs_initialise(&s->model, s->scene, &config, &s->found, &error));

@@ -19,7 +19,7 @@ static adcgs_train_config small_config(void)
 {
     adcgs_train_config c;
     assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
-    assert_int_equal(adcgs_train_set(&c, "start_anchors=200,max_anchors=300,densify_every=10,k=4,n_fv=12,theta_width=16,"
+    assert_int_equal(adcgs_train_set(&c, "start_anchors=200,max_anchors=300,densify_interval=10,k=4,n_fv=12,theta_width=16,"
                                          "omega_width=16,varpi_width=16,entropy_width=16", &error), ADCGS_OK);
     c.iterations = 80;
     return c;
@@ -45,7 +45,7 @@ static void lives_begin_at_their_moments(void **state)
     adcgs_train_config config = small_config();
     config.params.bodies = 0;
     adcgs_trainer *t = make(&config);
-    const float half = config.span_moments / (MOMENTS - 1);
+    const float half = config.lifetime_frames / (MOMENTS - 1);
     int at_moment[MOMENTS] = { 0 }, fast = 0, moving = 0, still = 0;
     assert_int_equal(t->config.params.spans, 1);
     for (uint32_t i = 0; i < t->f->n; i++) {
@@ -110,7 +110,7 @@ static void spans_need_what_moves(void **state)
     assert_int_equal(t->config.params.spans, 0);
     assert_int_equal(adcgs_fmodel_rows(t->f, ADCGS_P_SIGMA), ADCGS_SIGMA_N);
     adcgs_trainer_free(&t);
-    config.stereo = 0;
+    config.matching_frames = 0;
     t = make(&config);
     assert_int_equal(t->config.params.spans, 1);
     for (uint32_t i = 0; i < t->f->n; i++)

@@ -54,11 +54,11 @@ static adcgs_train_config short_config(void)
     c.iterations = 24;
     c.start_anchors = 70;
     c.max_anchors = 140;
-    c.densify_every = 3;
-    c.freeze_from = 0.90f;
+    c.densify_interval = 3;
+    c.freeze_start = 0.90f;
     c.rdo_strength = 1;
-    c.still_below = 1;
-    c.rigid_weight = 0.02f;
+    c.static_threshold = 1;
+    c.rigidity_weight = 0.02f;
     c.shape.theta_width = c.shape.omega_width = c.shape.varpi_width = c.shape.entropy_width = 8;
     return c;
 }

@@ -12,8 +12,8 @@
 
 #include <math.h>
 
-static const char small[] = "max_anchors=150,start_anchors=100,densify_every=20,k=4,n_fv=12,theta_width=16,omega_width=16,"
-                            "varpi_width=16,entropy_width=16,lambda=0.05,stereo=0,n_fg=8";
+static const char small[] = "max_anchors=150,start_anchors=100,densify_interval=20,k=4,n_fv=12,theta_width=16,omega_width=16,"
+                            "varpi_width=16,entropy_width=16,lambda=0.05,matching_frames=0,n_fg=8";
 static adcgs_trainer *trainer; /**< stopped just before its values are frozen */
 
 static adcgs_trainer *make(void)
@@ -23,7 +23,7 @@ static adcgs_trainer *make(void)
     assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
     assert_int_equal(adcgs_train_set(&c, small, &error), ADCGS_OK);
     c.iterations = 400;
-    c.freeze_from = 0.90f;
+    c.freeze_start = 0.90f;
     if (adcgs_trainer_create(&t, scene, &c, adcgs_cpu_best(), pool, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     t->quantise = adcgs_encode_quantise_hook;

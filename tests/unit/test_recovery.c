@@ -17,7 +17,7 @@
 /** A step that destroys the scene at once is detected and rolled back, until steps are short enough. */
 static void lost_pictures_are_learnt_anew(void **state)
 {
-    static const char *const too_long[] = { "learn_prediction=100", "learn_motion=100", "learn_prediction=10" };
+    static const char *const too_long[] = { "lr_scale_prediction=100", "lr_scale_motion=100", "lr_scale_prediction=10" };
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(too_long); i++) {
         adcgs_train_config config = small_config();
@@ -39,7 +39,7 @@ static void what_does_not_learn_stays(void **state)
     adcgs_train_config config = small_config();
     int stopped;
     (void)state;
-    assert_int_equal(adcgs_train_set(&config, "learn_prediction=0", &error), ADCGS_OK);
+    assert_int_equal(adcgs_train_set(&config, "lr_scale_prediction=0", &error), ADCGS_OK);
     for (int i = 0; i <= 10; i++)
         assert_float_equal(adcgs_train_rate(&config, 0, 0, i / 10.0), 0, 0);
     config.prune_units_at = config.prune_units_again = 2;

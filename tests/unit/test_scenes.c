@@ -271,7 +271,7 @@ static void wrong_counts_are_refused(void **state)
         adcgs_scenes_options options;
         const char *text;
     } wrong[] = {{{.name = "tiny", .cameras = 5}, "multiple"}, {{.name = "tiny", .noise = 65.0}, "noise of 65"},
-                 {{.name = "film-turn1", .cameras = 2}, "one camera"}, {{.name = "tiny", .moments = -1}, "-1 moments"}};
+                 {{.name = "film-turn1", .cameras = 2}, "one camera"}, {{.name = "tiny", .frames = -1}, "-1 frames"}};
     adcgs_error error;
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(wrong); i++) {

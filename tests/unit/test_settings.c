@@ -66,7 +66,7 @@ static void the_table_is_sound(void **state)
     assert_null(adcgs_train_presets[ADCGS_PRESETS]);
     const adcgs_train_config fast = preset("fast"), paper = preset("paper");
     assert_true(fast.iterations == 20000 && fast.lambda == 0.1f && fast.params.k == 6 && fast.shape.step_sigma == 0.06f);
-    assert_true(paper.max_anchors == 20000 && paper.params.time_width == 64 && paper.densify_from == 0.0125f);
+    assert_true(paper.max_anchors == 20000 && paper.params.time_width == 64 && paper.densify_start == 0.0125f);
     adcgs_train_config c;
     expect_refused(adcgs_train_preset(&c, "quick", &error), "unknown preset 'quick'");
 }
@@ -147,7 +147,7 @@ static void configurations_are_checked(void **state)
     static const char *const sets[][2] = {
         { "n_fg=9", "n_fg=9 and chunks=4: expected a multiple" },
         { "time_width=0", "time_rows=40 and time_width=0" },
-        { "freeze_from=0.5", "freeze_from=0.5 and round_from=0.85" },
+        { "freeze_start=0.5", "freeze_start=0.5 and quant_round_start=0.85" },
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(sets); i++) {
         const adcgs_train_config c = draft_with(sets[i][0]);
@@ -220,10 +220,29 @@ static void parts_are_left_out(void **state)
     adcgs_train_config c = preset("slow");
     assert_int_equal(adcgs_train_leave_out(&c, "anchors,densification,removal", &error), ADCGS_OK);
     assert_true(c.params.k == 1 && c.params.n_fg == 0 && c.max_anchors == 60000 && c.start_anchors == 60000);
-    assert_true(c.without_densification && !c.without_rate && c.prune_units_at == 2 && c.decide_at == 2);
-    assert_true(c.still_below <= 0 && c.detail_anchors >= 6 * preset("slow").detail_anchors);
+    assert_true(c.without_densification && !c.without_rate && c.prune_units_at == 2 && c.prune_at == 2);
+    assert_true(c.static_threshold <= 0 && c.detail_anchors >= 6 * preset("slow").detail_anchors);
     assert_int_equal(adcgs_train_check(&c, &error), ADCGS_OK);
     expect_refused(adcgs_train_leave_out(&c, "fine,", &error), "cannot leave out ''");
+}
+
+/** A former name sets the same field and is found in lists; former and present names do not overlap. */
+static void former_names_are_understood(void **state)
+{
+    adcgs_train_config c = draft_with("static_threshold=0.25,lifetimes=0"), former = draft_with("still_below=0.25,spans=0");
+    const char *list = "k=4,still_below=0,seed=1,spans=1", *one = "still_below";
+    expect_same(&c, &former);
+    for (const adcgs_setting_former *f = adcgs_settings_former; f->name; f++) {
+        assert_non_null(adcgs_setting_find(f->now));
+        for (const adcgs_setting *s = adcgs_settings; s->name; s++)
+            assert_string_not_equal(s->name, f->name);
+        assert_ptr_equal(adcgs_setting_find(f->name), adcgs_setting_find(f->now));
+    }
+    assert_string_equal(adcgs_setting_next_former(&list)->now, "static_threshold");
+    assert_string_equal(adcgs_setting_next_former(&list)->now, "lifetimes");
+    assert_null(adcgs_setting_next_former(&list));
+    assert_string_equal(adcgs_setting_next_former(&one)->now, "static_threshold");
+    assert_null(adcgs_setting_next_former(&one));
 }
 
 /** A line for each setting that has a name of its own, with the preset's value. */
@@ -238,12 +257,12 @@ static void the_list_tells_all(void **state)
     assert_int_equal(fclose(file), 0);
     for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
         char line[60], value[ADCGS_SETTING_TEXT];
-        snprintf(line, sizeof line, "\n  %-17s %-8s ", s->name, adcgs_setting_print(s, adcgs_setting_get(s, &c), value));
+        snprintf(line, sizeof line, "\n  %-26s %-8s ", s->name, adcgs_setting_print(s, adcgs_setting_get(s, &c), value));
         assert_int_equal(strstr(text, line) != NULL, s->group != ADCGS_SETTING_SWITCHES);
     }
     for (const char *at = text; *at; at++)
         lines += at[0] == '\n' && at[1] == ' ';
-    assert_true(lines > 50 && strstr(text, "\n  max_anchors       321 ") && strstr(text, "preset draft"));
+    assert_true(lines > 50 && strstr(text, "\n  max_anchors                321 ") && strstr(text, "preset draft"));
     free(text);
 }
 
@@ -258,6 +277,7 @@ int main(void)
         cmocka_unit_test(targets_are_checked),
         cmocka_unit_test(changes_make_the_same_again),
         cmocka_unit_test(parts_are_left_out),
+        cmocka_unit_test(former_names_are_understood),
         cmocka_unit_test(the_list_tells_all),
     };
     return cmocka_run_group_tests_name("settings", tests, NULL, NULL);

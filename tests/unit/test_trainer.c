@@ -28,7 +28,7 @@
 static adcgs_train_config all_stages_config(void)
 {
     adcgs_train_config c = small_config();
-    c.freeze_from = 0.92f; /* long enough to stop in */
+    c.freeze_start = 0.92f; /* long enough to stop in */
     c.rdo_strength = 1;
     c.params.adaptive_steps = 1;
     c.params.spans = 1;
@@ -346,7 +346,7 @@ static adcgs_trainer *make_faint(const adcgs_train_config *config, float weight)
             const size_t slot = adcgs_fmodel_slot(t->f, i, j);
             const int faint = j == 1 || i == 5;
             t->stats.weight[slot] = (faint ? weight : 1) * 1000.0f * (float)t->stats.n;
-            t->stats.opacity[slot] = config->keep_opacity * (faint ? 0.99f : 1.01f) * t->stats.presence[i];
+            t->stats.opacity[slot] = config->min_mean_opacity * (faint ? 0.99f : 1.01f) * t->stats.presence[i];
         }
     return t;
 }
@@ -411,9 +411,9 @@ static uint32_t moving_anchors(const adcgs_train_config *config, float opacity)
 static void faint_layers_move_together(void **state)
 {
     adcgs_train_config config = all_stages_config();
-    config.keep_opacity = 0;
+    config.min_mean_opacity = 0;
     config.params.spans = 0; /* primitives with a lifetime are dynamic in any case */
-    config.still_below = 10;
+    config.static_threshold = 10;
     const uint32_t opaque = moving_anchors(&config, 0.9f), faint = moving_anchors(&config, 0.02f);
     print_message("%u anchors move with opaque layers, %u with faint ones\n", opaque, faint);
     assert_int_equal(moving_anchors(&config, 0.5f), opaque);
@@ -424,9 +424,9 @@ static void faint_layers_move_together(void **state)
 static void what_never_changes_is_static(void **state)
 {
     adcgs_train_config config = all_stages_config();
-    config.keep_opacity = 0;
+    config.min_mean_opacity = 0;
     config.params.spans = 0;
-    config.still_below = 1e-30f; /* any motion of the networks at all */
+    config.static_threshold = 1e-30f; /* any motion of the networks at all */
     config.start_anchors = config.max_anchors = 1500; /* some of them in regions where nothing changes */
     adcgs_trainer *t = make_trainer(&config, pool);
     uint32_t stop = 50, changing = 0, moving = 0;
@@ -1247,7 +1247,7 @@ static void moments_shared_by_views_change_settings(void **state)
 {
     adcgs_scene alone = *scene;
     adcgs_train_config config = small_config();
-    const float rigid = config.rigid_weight, from = config.scale_from, square = config.square_weight;
+    const float rigid = config.rigidity_weight, from = config.scale_reg_start, square = config.l2_share;
     const adcgs_scene *alone_and_shared[] = { &alone, scene };
     assert_true(rigid > 0 && from > 0 && square > 0.5f);
     alone.n_times = alone.n_views[ADCGS_SPLIT_TRAIN];
@@ -1255,12 +1255,12 @@ static void moments_shared_by_views_change_settings(void **state)
         for (int i = 0; i < 2; i++) {
             adcgs_trainer *t;
             if (by_hand)
-                assert_int_equal(adcgs_train_set(&config, "rigid_weight=0.5,scale_from=0.125,square_weight=0.75", &error),
+                assert_int_equal(adcgs_train_set(&config, "rigidity_weight=0.5,scale_reg_start=0.125,l2_share=0.75", &error),
                                  ADCGS_OK);
             assert_int_equal(adcgs_trainer_create(&t, alone_and_shared[i], &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
-            assert_true(t->config.rigid_weight == (by_hand ? 0.5f : i ? 0 : rigid));
-            assert_true(t->config.scale_from == (by_hand ? 0.125f : i ? 0 : from));
-            assert_true(t->config.square_weight == (by_hand ? 0.75f : i ? square : 0.5f));
+            assert_true(t->config.rigidity_weight == (by_hand ? 0.5f : i ? 0 : rigid));
+            assert_true(t->config.scale_reg_start == (by_hand ? 0.125f : i ? 0 : from));
+            assert_true(t->config.l2_share == (by_hand ? 0.75f : i ? square : 0.5f));
             adcgs_trainer_free(&t);
         }
 }
@@ -1313,7 +1313,7 @@ static void rates_follow_their_kind(void **state)
     static const int groups[] = { ADCGS_P_COLOUR, ADCGS_P_THETA, ADCGS_P_TIME, ADCGS_P_E_FV };
     adcgs_trainer *plain = make_trainer(&config, NULL), *told;
     const adcgs_status status =
-        adcgs_train_set(&config, "learn_features=2,learn_prediction=3,learn_motion=5,learn_entropy=7", &error);
+        adcgs_train_set(&config, "lr_scale_anchors=2,lr_scale_prediction=3,lr_scale_motion=5,lr_scale_entropy=7", &error);
     assert_int_equal(status, ADCGS_OK);
     told = make_trainer(&config, NULL);
     for (int i = 0; i < 4; i++) {
@@ -1327,17 +1327,17 @@ static void rates_follow_their_kind(void **state)
     adcgs_trainer_free(&told);
 }
 
-/** Learning rates are constant until rates_fall_from, then fall by equal factors in equal times. */
+/** Learning rates are constant until lr_decay_start, then fall by equal factors in equal times. */
 static void rates_stay_then_fall(void **state)
 {
-    adcgs_train_config c = { .rates_fall_from = 0.5f };
+    adcgs_train_config c = { .lr_decay_start = 0.5f };
     for (int i = 0; i <= 2; i++)
         assert_float_equal(adcgs_train_rate(&c, 8, 2, 0.25 * i), 8, 0);
     assert_float_equal(adcgs_train_rate(&c, 8, 2, 0.75), 4, 1e-6);
     assert_float_equal(adcgs_train_rate(&c, 8, 2, 1), 2, 1e-6);
-    c.rates_fall_from = 0;
+    c.lr_decay_start = 0;
     assert_float_equal(adcgs_train_rate(&c, 8, 2, 0.5), 4, 1e-6);
-    c.rates_fall_from = 2;
+    c.lr_decay_start = 2;
     assert_float_equal(adcgs_train_rate(&c, 8, 2, 1), 8, 0);
 }
 
@@ -1358,8 +1358,8 @@ static void time_left_follows_the_schedule(void **state)
             adcgs_train_config c = small_config();
             adcgs_time_left left = { .load = 0 };
             c.iterations = N;
-            c.quarter_until = halves[h][0];
-            c.half_until = halves[h][1];
+            c.quarter_size_until = halves[h][0];
+            c.half_size_until = halves[h][1];
             assert_true(isnan(adcgs_time_left_of(&left, &c, 0, 0)));
             double truth = 0, before = HUGE_VAL;
             for (uint32_t i = 0; i < N; i++)
@@ -1392,8 +1392,8 @@ static void time_left_knows_loading(void **state)
     adcgs_train_config c = small_config();
     adcgs_time_left left = { .cost = { 1, 1, 1 }, .load = 100 };
     c.iterations = 10;
-    c.quarter_until = 0.2f;
-    c.half_until = 0.5f;
+    c.quarter_size_until = 0.2f;
+    c.half_size_until = 0.5f;
     assert_true(adcgs_time_left_of(&left, &c, 0, 0) == 210);
     assert_true(adcgs_time_left_of(&left, &c, 3, 0) == 107);
     assert_true(adcgs_time_left_of(&left, &c, 9, 0) == 1);

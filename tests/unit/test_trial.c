@@ -113,7 +113,7 @@ static void losing_mechanisms_are_dropped(void **state)
     adcgs_trials trials;
     config.trial_share = 1;
     config.iterations = 100;
-    config.scale_weight = 100;
+    config.scale_reg_weight = 100;
     assert_int_equal(adcgs_pool_create(&alone, 1, &error), ADCGS_OK);
     for (int i = 0; i < 2; i++) {
         adcgs_train_config c = config;
@@ -126,7 +126,7 @@ static void losing_mechanisms_are_dropped(void **state)
         assert_non_null(squares);
         assert_true(price->dropped && price->without > price->with + 0.3);
         assert_false(squares->dropped);
-        assert_true(c.scale_weight == 0 && c.square_weight == config.square_weight);
+        assert_true(c.scale_reg_weight == 0 && c.l2_share == config.l2_share);
         assert_null(find(&trials, "matching")); /* it is off */
         assert_null(find(&trials, "bodies"));   /* there are none */
     }
@@ -191,7 +191,7 @@ static void resumed_runs_adopt_verdicts(void **state)
 {
     static const char said[] = "views=3 iterations=100 gains=20.10/20.00 scale_price=20.00/21.00 dropped=squares,scale_price";
     adcgs_train_config config = small_config(), other = config;
-    config.scale_weight = config.square_weight = 0;
+    config.scale_reg_weight = config.l2_share = 0;
     adcgs_trainer *t = make_trainer(&config, pool);
     const uint32_t until = 10;
     int stopped;
@@ -200,9 +200,9 @@ static void resumed_runs_adopt_verdicts(void **state)
     assert_int_equal(adcgs_trainer_save(t, in("state"), &error), ADCGS_OK);
     adcgs_trainer_free(&t);
     other.lambda = 0.5f;
-    assert_true(other.scale_weight > 0);
+    assert_true(other.scale_reg_weight > 0);
     assert_int_equal(adcgs_checkpoint_adopt(&other, in("state"), &error), ADCGS_OK);
-    assert_true(other.scale_weight == 0 && other.square_weight == 0 && other.lambda == 0.5f && other.gains == 1);
+    assert_true(other.scale_reg_weight == 0 && other.l2_share == 0 && other.lambda == 0.5f && other.gains == 1);
     t = make_trainer(&other, pool);
     if (adcgs_trainer_load(t, in("state"), &error) != ADCGS_OK)
         fail_msg("%s", error.text);

@@ -43,11 +43,11 @@ static inline adcgs_train_config small_config(void)
     c.start_anchors = 100;
     c.max_anchors = 150;
     c.detail_anchors = 0;
-    c.densify_every = 20;
+    c.densify_interval = 20;
     c.params.spans = 0; /* tests of lifetimes enable them */
-    c.stereo = 0;
+    c.matching_frames = 0;
     c.densify_threshold = 1e-6f;
-    c.still_below = 0; /* motion becomes visible later than these runs end */
+    c.static_threshold = 0; /* motion becomes visible later than these runs end */
     c.params.k = 4;
     c.params.n_fv = 12;
     c.params.n_fg = 8; /* so that there are layers */

@@ -15,7 +15,7 @@ node=$(command -v node || command -v nodejs) || { echo "skipped: no node, which 
 chromium=${ADCGS_CHROMIUM-$(command -v chromium)} firefox=${ADCGS_FIREFOX-$(command -v firefox-esr || command -v firefox)}
 
 # One second of a hand-held camera with moving objects.
-./adcgs-demo-scene --scene film-demo --moments 18 --size 320x240 -q -o "$dir/demo" || { bad "adcgs-demo-scene"; exit 1; }
+./adcgs-demo-scene --scene film-demo --frames 18 --size 320x240 -q -o "$dir/demo" || { bad "adcgs-demo-scene"; exit 1; }
 ffmpeg -v error -framerate 18 -i "$dir/demo/train/r_%03d.png" -c:v libx264 -crf 12 -pix_fmt yuv420p "$dir/clip.mp4" ||
     { echo "skipped: ffmpeg without libx264"; exit 77; }
 
@@ -25,7 +25,7 @@ share=(./adcgs-share "$dir/clip.adcgs" -o "$dir/clip.html")
 "${import[@]}" --json >"$dir/out" 2>"$dir/err" || { bad "adcgs-import"; cat "$dir/err"; exit 1; }
 posed=$(sed -n 's/.*"posed": \([0-9]*\),/\1/p' "$dir/out")
 [ "$posed" -ge 12 ] || { bad "only $posed images have a pose"; cat "$dir/out"; }
-"${enc[@]}" --preset draft --set stereo=0 -n 150 -q || { bad "adcgs-enc"; exit 1; }
+"${enc[@]}" --preset draft --set matching_frames=0 -n 150 -q || { bad "adcgs-enc"; exit 1; }
 "${share[@]}" --page "$page" -q || { bad "adcgs-share"; exit 1; }
 ./adcgs-eval "$dir/clip.adcgs" "$dir/scene" --json >"$dir/out" 2>"$dir/err" || { bad "adcgs-eval"; cat "$dir/err"; }
 awk -F '[:,]' '/"psnr"/ { last = $2 } END { print last " dB"; exit !(last >= 16) }' "$dir/out" || { bad "PSNR too low"; cat "$dir/out"; }
