@@ -3,7 +3,7 @@
 #ifndef ADCGS_CONFORMANCE_ANSWERS_H
 #define ADCGS_CONFORMANCE_ANSWERS_H
 
-#include "plan.h"
+#include "recipe_plan.h"
 
 #include <stdio.h>
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The models of a recipe: positions, flags, bodies, masks, steps, priors, and values, coded while they are drawn. */
-#include "plan.h"
 #include "random_model.h"
+#include "recipe_plan.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "geom/geom.h"
 #include "model/latents_priv.h"
 #include "model/model_priv.h"

@@ -9,7 +9,7 @@
 #define ADCGS_CONFORMANCE_EDIT_H
 
 #include "chunks.h"
-#include "plan.h"
+#include "recipe_plan.h"
 
 /** Apply the recipe's edits and write the stream. */
 adcgs_status adcgs_edit_apply(adcgs_plan *plan, adcgs_chunk_list *list, adcgs_buffer *out, adcgs_error *error);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The networks of a recipe: shapes and switches, random numbers within limits, numbers that the recipe sets. */
-#include "plan.h"
 #include "random_model.h"
+#include "recipe_plan.h"
 
 #include "model/model_priv.h"
 #include "net/e24.h"

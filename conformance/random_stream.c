@@ -3,12 +3,12 @@
  * \file Random valid streams. The library decodes each in every way, with equal results, and the codec's writer writes it
  * again, after which the reader must find the same models.
  */
-#include "plan.h"
 #include "random_recipe.h"
+#include "recipe_plan.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "stream/input.h"
 
 #include <adcgs/adcgs.h>

@@ -25,11 +25,11 @@ rm -rf "$out.d"
 mkdir -p "$out.d"
 objects=
 for source; do
-    # The list includes headers. pool_alone.c replaces pool.c, as a module cannot start threads.
-    case $source in *.h | codec/base/pool.c) continue ;; esac
+    # The list includes headers. pool_alone.c replaces thread_pool.c, as a module cannot start threads.
+    case $source in *.h | codec/base/thread_pool.c) continue ;; esac
     object=$out.d/$(echo "$source" | tr / -).o
     # Only the code that distributes work needs atomic instructions. There are no thread-local variables.
-    case $source in codec/base/pool_alone.c | web/wasm/threads.c) atomics=-matomics ;; *) atomics= ;; esac
+    case $source in codec/base/pool_alone.c | web/wasm/wasm_threads.c) atomics=-matomics ;; *) atomics= ;; esac
     # shellcheck disable=SC2086
     $compiler $flags $atomics ${WASM_CFLAGS--O3} -c "$here/$source" -o "$object"
     objects="$objects $object"

@@ -2,7 +2,7 @@
 /** \file The public decoder: opening it, pushing bytes to it, closing it. */
 #include "api/decoder_priv.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/strict.h"
 #include "net/net.h"
 

@@ -4,7 +4,7 @@
 #define ADCGS_API_DECODER_PRIV_H
 
 #include "base/log.h"
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "render/render.h"
 #include "splat/splat.h"
 #include "stream/push.h"

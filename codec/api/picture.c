@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Images: frames, frames of 8 bits, depth. The rasteriser fills planes; the rows are then converted in bands. */
 #include "api/decoder_priv.h"
-#include "api/frame.h"
+#include "api/frame_samples.h"
 
 #define ROWS_PER_JOB 32
 

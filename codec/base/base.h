@@ -2,7 +2,7 @@
 /** \file
  * The lowest layer: errors, memory, little-endian access, small integer
  * helpers, the clock. It knows nothing of the codec. The other headers of this
- * folder: pool.h, cpu.h, log.h, digest.h, fmath.h, lanes.h, strict.h.
+ * folder: thread_pool.h, cpu_detect.h, log.h, digest.h, fmath.h, lanes.h, strict.h.
  */
 #ifndef ADCGS_BASE_BASE_H
 #define ADCGS_BASE_BASE_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The pool for platforms that cannot start threads (WebAssembly), in place of pool.c. A pool from adcgs_pool_create() has the
- * caller's thread alone. Lent threads (adcgs_pool_wrap()) are used.
+ * The pool for platforms that cannot start threads (WebAssembly), in place of thread_pool.c. A pool from adcgs_pool_create() has
+ * the caller's thread alone. Lent threads (adcgs_pool_wrap()) are used.
  */
 #include "base/pool_lent.h"
 

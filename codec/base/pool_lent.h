@@ -6,7 +6,7 @@
 #ifndef ADCGS_BASE_POOL_LENT_H
 #define ADCGS_BASE_POOL_LENT_H
 
-#include "base/pool.h"
+#include "base/thread_pool.h"
 
 #include <fenv.h>
 #include <stdatomic.h>

@@ -5,7 +5,7 @@
 #endif
 
 #define ADCGS_LANES_ISA 0
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
 #include "base/strict_kernels.h"
 

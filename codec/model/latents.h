@@ -8,7 +8,7 @@
 #define ADCGS_MODEL_LATENTS_H
 
 #include "model/model.h"
-#include "base/pool.h"
+#include "base/thread_pool.h"
 
 #define ADCGS_SLICE_LOG2_MIN 6
 #define ADCGS_SLICE_LOG2_MAX 16

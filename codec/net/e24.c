@@ -9,7 +9,7 @@
 #include "config.h"
 #endif
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "net/e24.h"
 
 #include <inttypes.h>

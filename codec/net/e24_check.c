@@ -4,7 +4,7 @@
  * network of numbers from a linear congruential generator, 64 samples, and the
  * CRC-32C of its outputs, run with every kernel that this machine has.
  */
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
 #include "base/strict.h"
 #include "net/e24.h"

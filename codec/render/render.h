@@ -7,8 +7,8 @@
 #ifndef ADCGS_RENDER_RENDER_H
 #define ADCGS_RENDER_RENDER_H
 
-#include "base/pool.h"
-#include "base/cpu.h"
+#include "base/thread_pool.h"
+#include "base/cpu_detect.h"
 
 #include <adcgs/types.h>
 

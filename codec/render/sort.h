@@ -3,7 +3,7 @@
 #ifndef ADCGS_RENDER_SORT_H
 #define ADCGS_RENDER_SORT_H
 
-#include "base/pool.h"
+#include "base/thread_pool.h"
 
 /**
  * Sort n keys by their upper 32 bits, stably. other: [n] scratch. Returns the array that holds the result: keys or other.

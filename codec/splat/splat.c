@@ -7,10 +7,10 @@
  */
 #include "config.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/fmath.h"
-#include "splat/bodies.h"
 #include "splat/floatnet.h"
+#include "splat/rigid_motion.h"
 #include "splat/rows.h"
 #include "splat/splat.h"
 #include "splat/splat_isa.h"

@@ -11,7 +11,7 @@
 #ifndef ADCGS_SPLAT_SPLAT_H
 #define ADCGS_SPLAT_SPLAT_H
 
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "model/model.h"
 
 typedef struct adcgs_splat adcgs_splat;

@@ -3,7 +3,7 @@
 #ifndef ADCGS_STREAM_PARTS_H
 #define ADCGS_STREAM_PARTS_H
 
-#include "model/keep.h"
+#include "model/inter.h"
 #include "stream/chunk.h"
 
 /** The networks of a stream; a network's id is its index here. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Writing a stream: chunk after chunk in the order of the spec clause "Stream". */
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
 #include "model/model_priv.h"
 #include "stream/writer.h"

@@ -6,7 +6,7 @@
 #include "camera/path_files.h"
 #include "camera/rotation.h"
 #include "camera/usda.h"
-#include "data/pose.h"
+#include "data/pose_check.h"
 #include "io/atomic.h"
 
 #include <math.h>

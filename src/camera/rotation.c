@@ -2,7 +2,7 @@
 /** \file Directions and rotations of cameras. */
 #include "camera/rotation.h"
 
-#include "io/quaternion.h"
+#include "io/quaternion_matrix.h"
 
 #include <math.h>
 #include <string.h>

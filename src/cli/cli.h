@@ -7,7 +7,7 @@
 #ifndef ADCGS_CLI_CLI_H
 #define ADCGS_CLI_CLI_H
 
-#include "base/pool.h"
+#include "base/thread_pool.h"
 
 #include <stdio.h>
 

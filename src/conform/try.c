@@ -3,7 +3,7 @@
 #include "conform/conform.h"
 
 #include "base/digest.h"
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "stream/chunk.h"
 #include "stream/input.h"
 #include "stream/stream.h"

@@ -4,7 +4,7 @@
 
 #include "data/camera_json.h"
 
-#include "data/pose.h"
+#include "data/pose_check.h"
 #include "io/file.h"
 #include "io/image.h"
 #include "io/kind.h"

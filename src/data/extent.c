@@ -4,7 +4,7 @@
 
 #include "data/extent.h"
 
-#include "data/sort.h"
+#include "data/sort_values.h"
 
 #include <math.h>
 

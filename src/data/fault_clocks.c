@@ -8,7 +8,7 @@
 
 #include "data/faults.h"
 
-#include "data/sort.h"
+#include "data/sort_values.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,8 +4,8 @@
 
 #include "data/faults.h"
 
-#include "data/by_camera.h"
-#include "data/sort.h"
+#include "data/group_views.h"
+#include "data/sort_values.h"
 
 #include <math.h>
 

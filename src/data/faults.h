@@ -6,8 +6,8 @@
 #ifndef ADCGS_DATA_FAULTS_H
 #define ADCGS_DATA_FAULTS_H
 
-#include "data/glance.h"
-#include "data/tracks.h"
+#include "data/camera_order.h"
+#include "data/thumbnail_stats.h"
 
 /** A detected fault. Times are those of the views. */
 typedef struct adcgs_fault {

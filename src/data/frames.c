@@ -5,7 +5,7 @@
 #include "data/frames.h"
 
 #include "data/scene.h"
-#include "data/sort.h"
+#include "data/sort_values.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 #define ADCGS_DATA_LIGHT_H
 
 #include "data/faults.h"
-#include "data/pictures.h"
+#include "data/image_store.h"
 
 /**
  * Sets stops of views: the gains of a camera's images at steps of light (adcgs_fault_light()), accumulated from its first

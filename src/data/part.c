@@ -3,7 +3,7 @@
 #include "data/part.h"
 
 #include "data/clips.h"
-#include "data/sort.h"
+#include "data/sort_values.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 
 #include "data/splat_views.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "io/harmonics.h"
 #include "render/project.h"
 #include "render/render.h"

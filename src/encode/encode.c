@@ -2,9 +2,9 @@
 /** \file From a training run to a stream. */
 #include "encode/encode.h"
 
-#include "data/by_camera.h"
+#include "data/group_views.h"
 #include "encode/quantise.h"
-#include "model/keep.h"
+#include "model/inter.h"
 #include "model/model_priv.h"
 #include "render/render.h"
 #include "stream/input.h"

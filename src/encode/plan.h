@@ -13,7 +13,7 @@
 
 #include "data/content.h"
 #include "data/part.h"
-#include "train/config.h"
+#include "train/train_config.h"
 
 #define ADCGS_PLAN_FORMAT 1
 #define ADCGS_PLAN_DIGEST 33         /**< hexadecimal digits and a zero */

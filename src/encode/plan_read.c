@@ -5,7 +5,7 @@
 #include "encode/plan.h"
 
 #include "base/digest.h"
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "data/camera_json.h"
 #include "layouts/open.h"
 #include "train/settings.h"

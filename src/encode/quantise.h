@@ -6,7 +6,7 @@
 #ifndef ADCGS_ENCODE_QUANTISE_H
 #define ADCGS_ENCODE_QUANTISE_H
 
-#include "fmodel/rdo.h"
+#include "fmodel/rdo_input.h"
 #include "model/latents.h"
 
 /**

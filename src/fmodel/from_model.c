@@ -2,7 +2,7 @@
 /** \file From adcgs_model to the float model. */
 #include "fmodel/from_model.h"
 
-#include "fmodel/bodies.h"
+#include "fmodel/body_trajectories.h"
 #include "splat/steps.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The forward pass: from parameters and a time to primitives. */
-#include "fmodel/bodies.h"
+#include "fmodel/body_trajectories.h"
 #include "fmodel/pass_layout.h"
 
 #include <stdalign.h>

@@ -7,7 +7,7 @@
 #ifndef ADCGS_FMODEL_PASS_H
 #define ADCGS_FMODEL_PASS_H
 
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "fmodel/fmodel.h"
 #include "grad/raster.h"
 

@@ -6,7 +6,7 @@
 #include "config.h"
 #endif
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 
 void adcgs_train_dsp_init_scalar(adcgs_train_dsp *dsp);
 void adcgs_train_dsp_init_avx2(adcgs_train_dsp *dsp);

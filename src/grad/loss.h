@@ -10,8 +10,8 @@
 #ifndef ADCGS_GRAD_LOSS_H
 #define ADCGS_GRAD_LOSS_H
 
-#include "base/cpu.h"
-#include "base/pool.h"
+#include "base/cpu_detect.h"
+#include "base/thread_pool.h"
 
 #define ADCGS_LOSS_EVEN 0.1f /**< error at which the absolute and the squared error have the same gradient */
 

@@ -5,7 +5,7 @@
  */
 #include "config.h"
 
-#include "grad/raster_isa.h"
+#include "grad/raster_backward_isa.h"
 
 /* Slots per job of the back-projection. */
 #define PROJECT_PIECE 512u

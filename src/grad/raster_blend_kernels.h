@@ -3,7 +3,7 @@
  * Body of the backward blend. A tile's splats are visited front to back, as in the forward pass. Each pixel keeps its
  * transmittance and the product of the gradient and the contribution of the splats still to come.
  */
-#include "grad/raster_isa.h"
+#include "grad/raster_backward_isa.h"
 #include "render/alpha.h"
 
 /* Prefetch distance of splats and their sums, in entries. */

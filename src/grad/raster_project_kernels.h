@@ -3,7 +3,7 @@
  * Body of the backward projection: the sums of a slot's splat over its tiles, in the order of its entries, then from the splat to
  * mean, scale, rotation, opacity and colour.
  */
-#include "grad/raster_isa.h"
+#include "grad/raster_backward_isa.h"
 #include "render/project.h"
 
 #include <stdalign.h>

@@ -5,8 +5,8 @@
 #include "import/import.h"
 
 #include "data/paths.h"
-#include "import/poses.h"
-#include "import/write.h"
+#include "import/colmap_run.h"
+#include "import/scene_write.h"
 #include "io/atomic.h"
 #include "io/file.h"
 

@@ -2,7 +2,7 @@
 /** \file Masks given with images: found by name, and transformed like the images. */
 #include "config.h"
 
-#include "import/pictures.h"
+#include "import/scene_images.h"
 
 #include "data/mask.h"
 #include "data/paths.h"

@@ -4,7 +4,7 @@
 
 #include "io/glb_nodes.h"
 
-#include "io/quaternion.h"
+#include "io/quaternion_matrix.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,7 +8,7 @@
 #include "io/splats_move.h"
 
 #include "io/harmonics.h"
-#include "io/quaternion.h"
+#include "io/quaternion_matrix.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
 
 #include "cli/text.h"
 #include "data/paths.h"
-#include "data/pose.h"
+#include "data/pose_check.h"
 #include "layouts/calibration.h"
 #include "layouts/colmap_files.h"
 #include "layouts/colmap_twice.h"

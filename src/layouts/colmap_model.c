@@ -4,8 +4,8 @@
 
 #include "layouts/colmap_model.h"
 
-#include "data/pose.h"
-#include "io/quaternion.h"
+#include "data/pose_check.h"
+#include "io/quaternion_matrix.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -6,7 +6,7 @@
 
 #include "data/camera_json.h"
 #include "data/paths.h"
-#include "data/pose.h"
+#include "data/pose_check.h"
 #include "layouts/view_lens.h"
 
 #include <dirent.h>

@@ -10,7 +10,7 @@
 #include <stdatomic.h>
 
 typedef struct adcgs_live_watch {
-    /* Set before the thread starts; see live.h. */
+    /* Set before the thread starts; see live_scene.h. */
     double seconds;
     int unbounded;
     int (*interrupted)(void);

@@ -6,7 +6,7 @@
 
 #include "cli/text.h"
 #include "data/paths.h"
-#include "data/pose.h"
+#include "data/pose_check.h"
 #include "io/file.h"
 #include "io/npy.h"
 #include "io/video.h"

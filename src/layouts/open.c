@@ -8,7 +8,7 @@
 #include "data/clips.h"
 #include "data/extent.h"
 #include "data/paths.h"
-#include "data/pose.h"
+#include "data/pose_check.h"
 #include "data/view_mask.h"
 #include "io/extension.h"
 #include "io/file.h"

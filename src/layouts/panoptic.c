@@ -7,7 +7,7 @@
 #include "camera/rotation.h"
 #include "data/camera_json.h"
 #include "data/paths.h"
-#include "data/pose.h"
+#include "data/pose_check.h"
 #include "io/npy.h"
 #include "io/npz.h"
 #include "layouts/calibration.h"

@@ -5,7 +5,7 @@
 #include "layouts/scene_file.h"
 
 #include "camera/rotation.h"
-#include "data/pose.h"
+#include "data/pose_check.h"
 
 #include <math.h>
 #include <stdio.h>

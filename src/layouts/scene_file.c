@@ -5,7 +5,7 @@
 #include "layouts/scene_file.h"
 
 #include "data/paths.h"
-#include "data/pose.h"
+#include "data/pose_check.h"
 #include "layouts/calibration.h"
 #include "layouts/footage.h"
 

@@ -5,7 +5,7 @@
 #include "layouts/splat_file.h"
 
 #include "camera/rotation.h"
-#include "data/sort.h"
+#include "data/sort_values.h"
 #include "data/splat_views.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 
 #include "layouts/transforms_check.h"
 
-#include "data/sort.h"
+#include "data/sort_values.h"
 #include "layouts/listing.h"
 #include "layouts/unmasked.h"
 #include "layouts/unposed.h"

@@ -4,7 +4,7 @@
 
 #include "metric/crop.h"
 
-#include "data/sort.h"
+#include "data/sort_values.h"
 #include "metric/metric.h"
 
 #include <math.h>

@@ -3,8 +3,8 @@
 #include "metric/evaluate.h"
 
 #include "camera/path.h"
-#include "data/by_camera.h"
-#include "data/sort.h"
+#include "data/group_views.h"
+#include "data/sort_values.h"
 #include "metric/metric.h"
 #include "metric/moving.h"
 

@@ -3,7 +3,7 @@
 #ifndef ADCGS_PLAY_ACTIONS_H
 #define ADCGS_PLAY_ACTIONS_H
 
-#include "play/state.h"
+#include "play/play_state.h"
 
 /** A line of the help page. */
 typedef struct adcgs_play_help {

@@ -3,7 +3,7 @@
 #ifndef ADCGS_PLAY_OVERLAY_H
 #define ADCGS_PLAY_OVERLAY_H
 
-#include "play/state.h"
+#include "play/play_state.h"
 #include "play/window.h"
 
 /** Figures that are not in the state. */

@@ -6,9 +6,9 @@
 
 #include "io/atomic.h"
 #include "io/image.h"
+#include "scenes/scene_views.h"
 #include "scenes/table.h"
 #include "scenes/texture.h"
-#include "scenes/views.h"
 
 #include <errno.h>
 #include <math.h>

@@ -7,7 +7,7 @@
 #ifndef ADCGS_SCENES_SPOIL_H
 #define ADCGS_SCENES_SPOIL_H
 
-#include "base/pool.h"
+#include "base/thread_pool.h"
 
 typedef enum adcgs_spoil_kind {
     ADCGS_SPOIL_EXPOSURE, /**< stops: each camera's gain is 2 to a random power between plus and minus this strength */

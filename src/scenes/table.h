@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * The scenes as data: the objects, the moving ones among them, and the cameras and times. table.c has scenes on a table, with
- * one difficulty each; captures.c has scenes that imitate common captures.
+ * one difficulty each; capture_scenes.c has scenes that imitate common captures.
  */
 #ifndef ADCGS_SCENES_TABLE_H
 #define ADCGS_SCENES_TABLE_H

@@ -5,7 +5,7 @@
 #ifndef ADCGS_SCENES_TRACE_H
 #define ADCGS_SCENES_TRACE_H
 
-#include "base/pool.h"
+#include "base/thread_pool.h"
 
 typedef enum adcgs_trace_shape {
     ADCGS_SHAPE_BALL,     /**< size[0] is the radius */

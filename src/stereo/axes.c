@@ -3,8 +3,8 @@
 #include "stereo/axes.h"
 
 #include "camera/rotation.h"
-#include "data/pose.h"
-#include "stereo/poses.h"
+#include "data/pose_check.h"
+#include "stereo/pose_error.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 /** \file Grids of the moving points. */
 #include "stereo/layers.h"
 
-#include "data/sort.h"
+#include "data/sort_values.h"
 #include "stereo/direct.h"
 
 #include <math.h>

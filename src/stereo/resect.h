@@ -6,7 +6,7 @@
 #ifndef ADCGS_STEREO_RESECT_H
 #define ADCGS_STEREO_RESECT_H
 
-#include "stereo/sight.h"
+#include "stereo/correspondence.h"
 
 /** Reprojection error in pixels; infinite if the point is behind the camera. */
 double adcgs_sight_off(const adcgs_stereo_view *view, const adcgs_sight *sight);

@@ -2,8 +2,8 @@
 /** \file Cameras, frames, reduced images and backgrounds; for a single moving camera, its images. */
 #include "stereo/rig.h"
 
-#include "data/by_camera.h"
-#include "data/sort.h"
+#include "data/group_views.h"
+#include "data/sort_values.h"
 
 #include <math.h>
 #include <stdlib.h>

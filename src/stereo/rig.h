@@ -6,7 +6,7 @@
 #ifndef ADCGS_STEREO_RIG_H
 #define ADCGS_STEREO_RIG_H
 
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "data/scene.h"
 #include "stereo/stereo.h"
 

@@ -6,7 +6,7 @@
 #ifndef ADCGS_STEREO_SMOOTH_H
 #define ADCGS_STEREO_SMOOTH_H
 
-#include "stereo/sweep.h"
+#include "stereo/plane_sweep.h"
 
 enum { ADCGS_DEPTH_NONE, ADCGS_DEPTH_WEAK, ADCGS_DEPTH_STRONG };
 

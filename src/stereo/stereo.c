@@ -2,15 +2,15 @@
 /** \file Static points, moving points, and free space. */
 #include "stereo/stereo.h"
 
-#include "stereo/bodies.h"
-#include "stereo/film.h"
-#include "stereo/follow.h"
+#include "stereo/body_search.h"
 #include "stereo/fuse.h"
 #include "stereo/hull.h"
-#include "stereo/lives.h"
-#include "stereo/odd.h"
-#include "stereo/poses.h"
+#include "stereo/lifetimes.h"
+#include "stereo/monocular.h"
+#include "stereo/pose_error.h"
+#include "stereo/pose_outlier.h"
 #include "stereo/thin.h"
+#include "stereo/velocities.h"
 
 #include <math.h>
 

@@ -13,7 +13,7 @@
 #ifndef ADCGS_STEREO_STEREO_H
 #define ADCGS_STEREO_STEREO_H
 
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "data/scene.h"
 
 enum { ADCGS_MATCHING_FRAMES_MAX = 48 /**< maximum number of matched frames */ };

@@ -235,7 +235,7 @@ adcgs_comparison adcgs_sweep_compare(const adcgs_sweep_plan *plan, const adcgs_s
 
 /* ---- Output ---- */
 
-/** Writes sweep.csv, ablation.csv, portions.csv, views.csv and sweep.json to the folder (write.c). */
+/** Writes sweep.csv, ablation.csv, portions.csv, views.csv and sweep.json to the folder (sweep_write.c). */
 adcgs_status adcgs_sweep_write_tables(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error);
 /** A test view on the page: ground truth, decoded, and their difference. */
 enum { ADCGS_SWEEP_PICTURES = 2 };

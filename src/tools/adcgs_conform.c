@@ -2,7 +2,7 @@
 /** \file adcgs-conform: tries every vector of a manifest on this library, in every way that it can run, or on any program. */
 #include "config.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "cli/cli.h"
 #include "cli/text.h"
 #include "conform/conform.h"

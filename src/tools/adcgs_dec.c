@@ -2,7 +2,7 @@
 /** \file adcgs-dec: decodes a stream and renders frames from it. */
 #include "config.h"
 
-#include "api/frame.h"
+#include "api/frame_samples.h"
 #include "camera/path.h"
 #include "cli/cli.h"
 #include "cli/text.h"

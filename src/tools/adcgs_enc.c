@@ -2,7 +2,7 @@
 /** \file adcgs-enc: trains a scene from posed images and writes it to one file. */
 #include "config.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "cli/text.h"
 #include "encode/encode.h"
 #include "encode/raw.h"

@@ -2,7 +2,7 @@
 /** \file adcgs-eval: measures a stream against the images of a scene. */
 #include "config.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "cli/cli.h"
 #include "io/kind.h"
 #include "layouts/open.h"

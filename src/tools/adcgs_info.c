@@ -2,9 +2,9 @@
 /** \file adcgs-info: prints the contents of a stream and the bytes of its parts. */
 #include "config.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "cli/cli.h"
 #include "cli/text.h"
 #include "io/http.h"

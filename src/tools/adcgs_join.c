@@ -2,7 +2,7 @@
 /** \file adcgs-join: checks the parts of a plan and joins them. */
 #include "config.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "cli/cli.h"
 #include "encode/encode.h"
 #include "io/atomic.h"

@@ -4,7 +4,7 @@
 
 #include "tools/answer.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
 #include "cli/cli.h"
 #include "io/file.h"

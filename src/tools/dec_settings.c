@@ -4,7 +4,7 @@
 
 #include "tools/dec_settings.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "tools/dec_open.h"
 
 #include <stdlib.h>

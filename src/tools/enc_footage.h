@@ -5,8 +5,8 @@
 
 #include "cli/cli.h"
 #include "data/faults.h"
-#include "data/glance.h"
 #include "data/scene.h"
+#include "data/thumbnail_stats.h"
 #include "stereo/axes.h"
 
 /**

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * adcgs-enc --live. Memory holds the images of the segment in training, its model and the previous model. Later images stay at
- * their source (layouts/live.h).
+ * their source (layouts/live_scene.h).
  */
 #include "config.h"
 
 #include "tools/enc_live.h"
 
-#include "encode/live.h"
+#include "encode/live_stream.h"
 #include "io/claim.h"
 #include "io/growing.h"
 #include "io/pipe.h"
-#include "layouts/live.h"
+#include "layouts/live_scene.h"
 #include "tools/enc_effort.h"
 #include "tools/enc_live_file.h"
-#include "tools/enc_live_past.h"
+#include "tools/enc_live_resume.h"
 #include "tools/enc_live_sum.h"
 #include "tools/enc_parts.h"
 #include "train/settings.h"

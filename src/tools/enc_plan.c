@@ -4,7 +4,7 @@
 
 #include "tools/enc_plan.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
 #include "io/claim.h"
 #include "io/json.h"

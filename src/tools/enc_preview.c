@@ -5,7 +5,7 @@
 #include "tools/enc_preview.h"
 
 #include "tools/mosaic.h"
-#include "train/views.h"
+#include "train/train_views.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 
 #include "tools/enc_ranks.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "tools/enc_rank.h"
 #include "tools/enc_segments.h"
 

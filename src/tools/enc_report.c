@@ -5,7 +5,7 @@
 #include "cli/text.h"
 #include "io/json.h"
 #include "metric/evaluate.h"
-#include "tools/enc_doubt.h"
+#include "tools/enc_diagnose.h"
 
 #include <adcgs/decoder.h>
 

@@ -10,8 +10,8 @@
 #include "metric/metric.h"
 #include "model/model_priv.h"
 #include "tools/enc_footage.h"
+#include "tools/enc_image_space.h"
 #include "tools/enc_rescue.h"
-#include "tools/enc_room.h"
 #include "train/settings.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 
 #include "tools/enc_team.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "cli/cli.h"
 #include "train/tree_sum.h"
 

@@ -5,7 +5,7 @@
 
 #include "tools/info_check.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "cli/text.h"
 #include "io/atomic.h"
 #include "io/http.h"

@@ -4,7 +4,7 @@
 
 #include "tools/info_points.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "io/offset.h"
 #include "splat/splat.h"
 

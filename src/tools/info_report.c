@@ -3,7 +3,7 @@
 #include "tools/info_report.h"
 
 #include "base/digest.h"
-#include "model/keep.h"
+#include "model/inter.h"
 #include "model/model_priv.h"
 
 void adcgs_info_list_components(const adcgs_bytes *b, adcgs_info_component out[ADCGS_INFO_COMPONENTS])

@@ -4,7 +4,7 @@
 #define ADCGS_TRAIN_ANCHOR_PLAN_H
 
 #include "data/scene.h"
-#include "train/config.h"
+#include "train/train_config.h"
 
 /**
  * Sets max_anchors, unless the user set it, and limits start_anchors to it. The value is config->detail_anchors times the square

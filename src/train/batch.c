@@ -2,8 +2,8 @@
 /** \file The views of an iteration. */
 #include "train/batch.h"
 
-#include "train/look.h"
 #include "train/share.h"
+#include "train/view_pass.h"
 
 /* ---- Sums: all gradients, followed by the statistics ---- */
 

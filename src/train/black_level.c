@@ -2,7 +2,7 @@
 /** \file Black levels of cameras. */
 #include "train/black_level.h"
 
-#include "data/sort.h"
+#include "data/sort_values.h"
 
 #include <math.h>
 

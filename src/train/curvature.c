@@ -8,7 +8,7 @@
 
 #include "grad/random.h"
 #include "train/sample.h"
-#include "train/views.h"
+#include "train/train_views.h"
 
 #include <math.h>
 

@@ -3,13 +3,13 @@
 #include "train/densify.h"
 
 #include "geom/geom.h"
-#include "stereo/pose.h"
+#include "stereo/body_pose.h"
 #include "train/anchor_set.h"
 #include "train/floaters.h"
 #include "train/initialise.h"
-#include "train/moment_densify.h"
 #include "train/residual_densify.h"
 #include "train/start_points.h"
+#include "train/temporal_densify.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 /** \file Exposure of cameras. */
 #include "train/exposure.h"
 
-#include "data/by_camera.h"
-#include "data/sort.h"
+#include "data/group_views.h"
+#include "data/sort_values.h"
 
 #include <math.h>
 

@@ -2,9 +2,9 @@
 /** \file The first anchors. */
 #include "train/initialise.h"
 
-#include "fmodel/bodies.h"
+#include "fmodel/body_trajectories.h"
 #include "geom/geom.h"
-#include "stereo/pose.h"
+#include "stereo/body_pose.h"
 #include "train/spacing.h"
 #include "train/start_points.h"
 

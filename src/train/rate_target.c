@@ -6,7 +6,7 @@
 #include "train/prune.h"
 #include "train/rate_search.h"
 #include "train/sample.h"
-#include "train/views.h"
+#include "train/train_views.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 /** \file Densification from residuals. */
 #include "train/residual_densify.h"
 
-#include "train/views.h"
+#include "train/train_views.h"
 
 #include <math.h>
 #include <stdlib.h>

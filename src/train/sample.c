@@ -4,7 +4,7 @@
 
 #include "grad/random.h"
 #include "metric/metric.h"
-#include "train/views.h"
+#include "train/train_views.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #ifndef ADCGS_TRAIN_SCHEDULE_H
 #define ADCGS_TRAIN_SCHEDULE_H
 
-#include "train/config.h"
+#include "train/train_config.h"
 
 /** Sets the learning rates of a new model's parameter groups: the defaults times the configured factors. */
 void adcgs_train_rates(const adcgs_train_config *config, adcgs_fmodel *f);

@@ -7,7 +7,7 @@
 #define ADCGS_TRAIN_SETTINGS_H
 
 #include "bits/bytes.h"
-#include "train/config.h"
+#include "train/train_config.h"
 
 #include <stdio.h>
 

@@ -3,9 +3,9 @@
 #include "train/start_points.h"
 
 #include "camera/rotation.h"
-#include "data/sort.h"
+#include "data/sort_values.h"
 #include "grad/random.h"
-#include "stereo/pose.h"
+#include "stereo/body_pose.h"
 #include "train/scene_frame.h"
 
 #include <math.h>

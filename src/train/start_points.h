@@ -7,7 +7,7 @@
 #define ADCGS_TRAIN_START_POINTS_H
 
 #include "stereo/stereo.h"
-#include "train/config.h"
+#include "train/train_config.h"
 
 /** Minimum number of points that count as a scene's points. */
 enum { ADCGS_POINTS_LEAST = 16 };

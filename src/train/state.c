@@ -2,10 +2,10 @@
 /** \file Creation and release of a run's state. */
 #include "train/state.h"
 
-#include "data/by_camera.h"
-#include "fmodel/bodies.h"
+#include "data/group_views.h"
+#include "fmodel/body_trajectories.h"
 #include "train/anchor_plan.h"
-#include "train/follow.h"
+#include "train/continue_segment.h"
 #include "train/initialise.h"
 #include "train/rate_plan.h"
 #include "train/scene_frame.h"

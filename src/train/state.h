@@ -7,9 +7,9 @@
 
 #include "bits/bytes.h"
 #include "data/faults.h"
-#include "data/pictures.h"
+#include "data/image_store.h"
 #include "fmodel/pass.h"
-#include "fmodel/rdo.h"
+#include "fmodel/rdo_input.h"
 #include "fmodel/rigidity.h"
 #include "fmodel/scale_penalty.h"
 #include "fmodel/weight_average.h"

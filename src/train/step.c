@@ -5,7 +5,7 @@
 #include "fmodel/from_model.h"
 #include "fmodel/weight_rate.h"
 #include "train/batch.h"
-#include "train/look.h"
+#include "train/view_pass.h"
 
 #include <math.h>
 

@@ -6,9 +6,9 @@
 #include "train/mechanisms.h"
 #include "train/settings.h"
 #include "train/start_points.h"
+#include "train/train_views.h"
 #include "train/trainer.h"
 #include "train/trial_scene.h"
-#include "train/views.h"
 
 #include <math.h>
 #include <stdio.h>

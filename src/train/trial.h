@@ -9,11 +9,11 @@
 #ifndef ADCGS_TRAIN_TRIAL_H
 #define ADCGS_TRAIN_TRIAL_H
 
-#include "base/cpu.h"
-#include "base/pool.h"
+#include "base/cpu_detect.h"
+#include "base/thread_pool.h"
 #include "data/scene.h"
-#include "train/config.h"
 #include "train/mechanisms.h"
+#include "train/train_config.h"
 
 enum { ADCGS_TRIALS_TEXT = 640 };
 

@@ -2,9 +2,9 @@
 /** \file Training views held out from a trial. */
 #include "train/trial_scene.h"
 
-#include "data/by_camera.h"
+#include "data/group_views.h"
 #include "data/part.h"
-#include "data/sort.h"
+#include "data/sort_values.h"
 #include "train/scene_frame.h"
 
 #include <math.h>

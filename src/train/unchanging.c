@@ -2,10 +2,10 @@
 /** \file Detection of anchors rendered where images never change. */
 #include "train/unchanging.h"
 
-#include "data/by_camera.h"
+#include "data/group_views.h"
 #include "metric/changes.h"
 #include "train/anchor_set.h"
-#include "train/views.h"
+#include "train/train_views.h"
 
 enum {
     PICTURES_LEAST = 4, /* minimum number of images of a camera for a result */

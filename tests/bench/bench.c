@@ -7,8 +7,8 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
+#include "bench_parts.h"
 #include "ceilings.h"
-#include "parts.h"
 
 #include "cli/cli.h"
 

@@ -7,7 +7,7 @@
 #ifndef ADCGS_BENCH_FAST_H
 #define ADCGS_BENCH_FAST_H
 
-#include "grad/raster_isa.h"
+#include "grad/raster_backward_isa.h"
 #include "render/raster_isa.h"
 
 extern const adcgs_raster_dsp bench_fast_raster_avx2, bench_fast_raster_avx512;

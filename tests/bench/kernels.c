@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Kernels of networks, entropy coding and training. */
-#include "parts.h"
+#include "bench_parts.h"
 
 #include "bits/range.h"
 #include "geom/geom.h"

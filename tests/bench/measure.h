@@ -7,8 +7,8 @@
 #ifndef ADCGS_BENCH_MEASURE_H
 #define ADCGS_BENCH_MEASURE_H
 
-#include "base/cpu.h"
-#include "base/pool.h"
+#include "base/cpu_detect.h"
+#include "base/thread_pool.h"
 
 #include <stdio.h>
 

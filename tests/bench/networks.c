@@ -3,7 +3,7 @@
  * \file The complete computation of training between the anchors' parameters and the primitives, at several widths of the
  * networks.
  */
-#include "parts.h"
+#include "bench_parts.h"
 
 #include "fmodel/pass.h"
 #include "train/settings.h"

@@ -8,7 +8,7 @@
 #ifndef ADCGS_BENCH_PLAIN_H
 #define ADCGS_BENCH_PLAIN_H
 
-#include "grad/raster_isa.h"
+#include "grad/raster_backward_isa.h"
 
 typedef struct plain_tile {
     float t[16][16];   /**< final transmittance, [row][column] */

@@ -6,7 +6,7 @@
  */
 #include "config.h"
 
-#include "data/by_camera.h"
+#include "data/group_views.h"
 #include "grad/raster.h"
 #include "layouts/open.h"
 #include "metric/temporal.h"

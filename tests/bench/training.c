@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Complete iterations of training; then decoding and playing of the trained model. */
-#include "parts.h"
+#include "bench_parts.h"
 
 #include "encode/encode.h"
 #include "layouts/open.h"

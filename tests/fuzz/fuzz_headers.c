@@ -6,7 +6,7 @@
 #include "fuzz.h"
 #include "stream_edit.h"
 
-#include "model/keep_priv.h"
+#include "model/inter_priv.h"
 #include "model/model_priv.h"
 #include "stream/parts.h"
 

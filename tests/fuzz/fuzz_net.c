@@ -6,7 +6,7 @@
 #include "fuzz.h"
 #include "stream_edit.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
 #include "model/model_priv.h"
 #include "stream/parts.h"

@@ -7,7 +7,7 @@
 #include "random_model.h"
 
 #include "base/digest.h"
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "stream/input.h"
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/roundtrip", NULL };

@@ -75,6 +75,6 @@ symbol=$(awk -v file="$from" 'NR == FNR { source[$1 ":"] = $2; next }
     source[$1] == file && $2 ~ /^_?adcgs_/ && $3 !~ /[Uwv]/ { print $2; exit }' "$dir/objects" "$dir/symbols")
 { cat "$dir/symbols"; echo "$used: $symbol U         "; } | reference_edges >"$dir/planted"
 has_circle "$dir/planted" | grep -qxF "$from" || { echo "a planted circle of references is not detected" >&2; faults=1; }
-{ cat "$dir/includes"; echo 'codec/base/base.h:#include "base/pool.h"'; } | include_edges >"$dir/planted"
-has_circle "$dir/planted" | grep -qxF codec/base/pool.h || { echo "a planted circle of includes is not detected" >&2; faults=1; }
+{ cat "$dir/includes"; echo 'codec/base/base.h:#include "base/thread_pool.h"'; } | include_edges >"$dir/planted"
+has_circle "$dir/planted" | grep -qxF codec/base/thread_pool.h || { echo "a planted circle of includes is not detected" >&2; faults=1; }
 exit $faults

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The folders have an order: each includes itself and earlier folders. codec/ never includes src/.
+# The folders have an order: each includes itself and earlier folders. codec/ never includes src/. Each file has a base name of its own.
 set -u
 cd "${srcdir:-.}" || exit 99
 faults=0
@@ -40,6 +40,13 @@ fi
 if grep -n '^ *# *include <adcgs/' codec/include/adcgs/{status,types,version,cpu,pool}.h |
     grep -v -E 'include <adcgs/(status|types)\.h>' >&2; then
     echo "a basic installed header includes more than types.h and status.h" >&2
+    faults=$((faults + 1))
+fi
+
+# A base name, as in a backtrace or a message, means one file.
+repeated=$(find codec src conformance web tests examples -name '*.[ch]' -o -name '*.cc' | sed 's|.*/||' | sort | uniq -d)
+if [ -n "$repeated" ]; then
+    echo "base names of several files:" $repeated >&2
     faults=$((faults + 1))
 fi
 

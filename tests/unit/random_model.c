@@ -2,9 +2,9 @@
 /** \file Random valid models and streams for tests. */
 #include "random_model.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "geom/geom.h"
-#include "model/keep_priv.h"
+#include "model/inter_priv.h"
 #include "model/model_priv.h"
 
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #ifndef ADCGS_TESTS_RANDOM_MODEL_H
 #define ADCGS_TESTS_RANDOM_MODEL_H
 
-#include "model/keep.h"
+#include "model/inter.h"
 #include "stream/stream.h"
 
 /** Counter-based random numbers (SplitMix64). */

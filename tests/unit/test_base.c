@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The base: known answers of the digests, memory accounting, statuses, CPU levels, and the pool at 1, 2 and 7 threads. */
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
 #include "base/fmath.h"
-#include "base/pool.h"
+#include "base/thread_pool.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

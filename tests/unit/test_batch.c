@@ -7,8 +7,8 @@
 
 #include "grad/random.h"
 #include "train/batch.h"
-#include "train/look.h"
 #include "train/stages.h"
+#include "train/view_pass.h"
 
 #include <math.h>
 #include <pthread.h>

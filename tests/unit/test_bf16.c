@@ -4,7 +4,7 @@
  * Layers in bf16 and their weight gradients against plain sums in double of factors rounded to bf16. Sizes fill no vector, or are
  * large. Nothing is written outside the outputs. Skipped where the CPU has no AVX512-BF16.
  */
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "grad/dsp.h"
 #include "unit/pixels_scene.h"
 

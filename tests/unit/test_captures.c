@@ -3,10 +3,10 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "io/image.h"
+#include "scenes/scene_views.h"
 #include "scenes/scenes.h"
 #include "scenes/shapes.h"
 #include "scenes/texture.h"
-#include "scenes/views.h"
 
 #include "camera/vector.h"
 

@@ -5,7 +5,7 @@
  */
 #include "outside_files.h"
 
-#include "data/pictures.h"
+#include "data/image_store.h"
 #include "layouts/open.h"
 
 #include <math.h>

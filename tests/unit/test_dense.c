@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Dense layers: every CPU level gives the bits of the sequential sum. */
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "splat/dense.h"
 #include "unit/pixels_scene.h"
 

@@ -7,7 +7,7 @@
 
 #include "stream_fixture.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
 #include "render/render.h"
 #include "splat/splat.h"

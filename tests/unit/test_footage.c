@@ -5,7 +5,7 @@
  */
 #include "data/faults.h"
 #include "data/light.h"
-#include "train/doubled.h"
+#include "train/retime_duplicates.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -3,9 +3,9 @@
 #include "random_model.h"
 #include "stream_edit.h"
 
-#include "base/cpu.h"
-#include "base/pool.h"
-#include "model/keep_priv.h"
+#include "base/cpu_detect.h"
+#include "base/thread_pool.h"
+#include "model/inter_priv.h"
 #include "model/model_priv.h"
 #include "stream/input.h"
 

@@ -10,8 +10,8 @@
  */
 #include "config.h"
 
-#include "base/cpu.h"
-#include "base/pool.h"
+#include "base/cpu_detect.h"
+#include "base/thread_pool.h"
 #include "grad/dsp.h"
 #include "grad/loss.h"
 #include "grad/raster.h"

@@ -7,7 +7,7 @@
 #include "random_model.h"
 #include "stream_edit.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "model/model_priv.h"
 #include "stream/input.h"
 #include "stream/parts.h"

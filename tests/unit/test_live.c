@@ -6,12 +6,12 @@
 #define _POSIX_C_SOURCE 200809L
 #include "random_model.h"
 
-#include "encode/past.h"
+#include "encode/resume_reader.h"
 #include "encode/settle.h"
 #include "io/growing.h"
 #include "io/image.h"
 #include "io/y4m_shape.h"
-#include "layouts/live.h"
+#include "layouts/live_scene.h"
 #include "model/model_priv.h"
 #include "stream/grow.h"
 #include "stream/input.h"

@@ -6,8 +6,8 @@
 #include "io/image.h"
 #include "train/residual_densify.h"
 #include "train/settings.h"
+#include "train/train_views.h"
 #include "train/trainer.h"
-#include "train/views.h"
 
 #include <math.h>
 

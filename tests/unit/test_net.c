@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Value tables and values, E24 networks against a 64-bit reference on every kernel, and the weight coder. */
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "net/net.h"
 
 #include <math.h>

@@ -6,7 +6,7 @@
 
 #include "encode/encode.h"
 #include "train/batch.h"
-#include "train/decide.h"
+#include "train/prune_and_fix.h"
 #include "train/stages.h"
 #include "train/unit_prune.h"
 

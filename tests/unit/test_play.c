@@ -6,9 +6,9 @@
 #include "play/actions.h"
 #include "play/overlay.h"
 #include "play/panel.h"
+#include "play/play_state.h"
 #include "play/scale.h"
 #include "play/script.h"
-#include "play/state.h"
 
 #include <math.h>
 

@@ -5,7 +5,7 @@
  */
 #include "config.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/fmath.h"
 #include "base/strict.h"
 #include "splat/quaternion.h"

@@ -4,7 +4,7 @@
  * beyond the image, edge-on, at all limits, in hundreds of layers. Each frame equals the one by the specification's text, at
  * every CPU level. Every intermediate number lies within the annex of bounds.
  */
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "unit/ranges.h"
 #include "unit/ranges_pixels.h"
 

@@ -8,7 +8,7 @@
 #include "encode/encode.h"
 #include "train/contrast.h"
 #include "train/schedule.h"
-#include "train/views.h"
+#include "train/train_views.h"
 
 #include <math.h>
 

@@ -5,7 +5,7 @@
  */
 #include "stream_fixture.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
 #include "model/model_priv.h"
 #include "stream/chunk.h"

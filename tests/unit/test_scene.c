@@ -2,7 +2,7 @@
 /** \file Scenes: both layouts, conventions, every kind of bad input, and real scenes where available. */
 #include "outside_files.h"
 
-#include "data/pose.h"
+#include "data/pose_check.h"
 #include "data/scene.h"
 #include "layouts/open.h"
 

@@ -5,7 +5,7 @@
  */
 #include "stream_fixture.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "stream/chunk.h"
 #include "stream/input.h"
 #include "stream/seek.h"

@@ -3,7 +3,7 @@
  * Primitives against an evaluation one by one that follows the specification's text, bit for bit, on every CPU level and for
  * several numbers of threads. The elementary functions against the C library's.
  */
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/fmath.h"
 #include "model/model_priv.h"
 #include "random_model.h"

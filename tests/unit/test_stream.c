@@ -2,9 +2,9 @@
 /** \file Streams: writing and reading are inverse for any valid model, for any order of arrival and any way of decoding. */
 #include "random_model.h"
 
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/digest.h"
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "model/latents.h"
 #include "model/model_priv.h"
 #include "stream/chunk.h"

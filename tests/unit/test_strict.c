@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file A process in another floating-point mode gets no decoder and no frame, and the message gives the reason. */
-#include "base/cpu.h"
+#include "base/cpu_detect.h"
 #include "base/strict.h"
 
 #include <adcgs/adcgs.h>

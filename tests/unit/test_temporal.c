@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Quality over time, against plain loops over whole videos and values known beforehand; views sorted by camera. */
-#include "data/by_camera.h"
+#include "data/group_views.h"
 #include "metric/changes.h"
 #include "metric/metric.h"
 #include "metric/temporal.h"

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "fmodel/bodies.h"
+#include "fmodel/body_trajectories.h"
 #include "fmodel/pass.h"
 #include "fmodel/rigidity.h"
 #include "fmodel/scale_penalty.h"

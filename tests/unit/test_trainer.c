@@ -14,14 +14,14 @@
 #include "splat/splat.h"
 #include "train/black_level.h"
 #include "train/contrast.h"
-#include "train/decide.h"
+#include "train/prune_and_fix.h"
 #include "train/unchanging.h"
 #include "train/densify.h"
 #include "train/initialise.h"
 #include "train/residual_densify.h"
 #include "train/sample.h"
 #include "train/start_points.h"
-#include "train/views.h"
+#include "train/train_views.h"
 
 #include <math.h>
 

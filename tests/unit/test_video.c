@@ -2,7 +2,7 @@
 /** \file Videos: writing and reading again, damaged files, many at once. */
 #include "outside_files.h"
 
-#include "base/pool.h"
+#include "base/thread_pool.h"
 #include "data/clips.h"
 #include "data/scene.h"
 #include "io/sink.h"

@@ -3,7 +3,7 @@
 #include "config.h"
 
 #include "wasm/export.h"
-#include "wasm/scene.h"
+#include "wasm/page_scene.h"
 
 #include "base/base.h"
 

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Extracts images from videos, rotates them upright and reduces them. */
+#include "config.h"
+
+#include "import/scene_images.h"
+
+#include "data/paths.h"
+#include "io/atomic.h"
+#include "io/extension.h"
+#include "io/file.h"
+#include "io/photo.h"
+#include "io/video.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#define PICTURE_BYTES_MAX ((uint64_t)1 << 30)
+
+adcgs_status adcgs_import_path(char **out, const adcgs_import_job *job, const char *name)
+{
+    *out = adcgs_path("%s/%s", job->folder, name);
+    return *out ? ADCGS_OK : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", job->folder);
+}
+
+adcgs_status adcgs_import_make_folder(const adcgs_import_job *job, const char *name)
+{
+    char *path;
+    ADCGS_TRY(adcgs_import_path(&path, job, name));
+    adcgs_status status = ADCGS_OK;
+    if (mkdir(path, 0777) && errno != EEXIST)
+        status = adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", path, strerror(errno));
+    free(path);
+    return status;
+}
+
+adcgs_status adcgs_import_goes_on(const adcgs_import_job *job)
+{
+    if (!adcgs_interrupted())
+        return ADCGS_OK;
+    return adcgs_fail(job->error, ADCGS_ERR_IO, "interrupted; run the same command again to continue from %s", job->folder);
+}
+
+/* ---- One image ---- */
+
+static adcgs_status copy_file(const char *from, const char *to, adcgs_error *error)
+{
+    uint8_t *data;
+    size_t bytes;
+    ADCGS_TRY(adcgs_file_load(&data, &bytes, from, PICTURE_BYTES_MAX, error));
+    const adcgs_status status = adcgs_atomic_save(to, data, bytes, error);
+    free(data);
+    return status;
+}
+
+static adcgs_status write_shaped(adcgs_import_job *job, const adcgs_shot *shot, adcgs_image *image, const char *from,
+                                 const char *to)
+{
+    ADCGS_TRY(adcgs_photo_shape(image, shot->turn, shot->width, shot->height, from, job->error));
+    return adcgs_image_write(image, to, 0, job->error);
+}
+
+/** Makes an image from a file. */
+static adcgs_status make_picture(adcgs_import_job *job, const adcgs_shot *shot, const char *to)
+{
+    adcgs_image image;
+    if (shot->as_is)
+        return copy_file(shot->path, to, job->error);
+    ADCGS_TRY(adcgs_image_read(&image, shot->path, job->error));
+    const adcgs_status status = write_shaped(job, shot, &image, shot->path, to);
+    adcgs_image_free(&image);
+    return status;
+}
+
+/** Makes an image from a frame of an open video. */
+static adcgs_status make_frame(adcgs_import_job *job, const adcgs_shot *shot, adcgs_video *video, const char *to)
+{
+    adcgs_image image;
+    ADCGS_TRY(adcgs_video_read(video, shot->frame, &image, job->error));
+    const adcgs_status status = write_shaped(job, shot, &image, job->shots.cameras[shot->camera].video, to);
+    adcgs_image_free(&image);
+    return status;
+}
+
+/* ---- All images of a camera ---- */
+
+static adcgs_status make_shot(adcgs_import_job *job, adcgs_shot *shot, adcgs_video *video)
+{
+    char *images, *to = NULL;
+    ADCGS_TRY(adcgs_import_goes_on(job));
+    ADCGS_TRY(adcgs_import_path(&images, job, "images"));
+    adcgs_status status = (to = adcgs_shot_path(&job->shots, shot, images))
+                              ? ADCGS_OK : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", images);
+    free(images);
+    if (status == ADCGS_OK && video) {
+        shot->width = adcgs_video_get_info(video)->width;
+        shot->height = adcgs_video_get_info(video)->height;
+        adcgs_shot_fit(&shot->width, &shot->height, job->options->side);
+    }
+    if (status == ADCGS_OK && !adcgs_is_there(to))
+        status = video ? make_frame(job, shot, video, to) : make_picture(job, shot, to);
+    if (status == ADCGS_OK && job->options->masks)
+        status = adcgs_import_mask(job, shot);
+    free(to);
+    return status;
+}
+
+/** Makes the images of one camera, in the order of its video's frames. */
+static adcgs_status make_shots(adcgs_import_job *job, uint32_t camera, uint32_t *done)
+{
+    adcgs_shots *shots = &job->shots;
+    adcgs_video *video = NULL;
+    adcgs_status status =
+        shots->cameras[camera].video ? adcgs_video_open(&video, shots->cameras[camera].video, job->error) : ADCGS_OK;
+    for (uint32_t i = 0; status == ADCGS_OK && i < shots->n; i++) {
+        if (shots->shots[i].camera != camera)
+            continue;
+        status = make_shot(job, &shots->shots[i], video);
+        adcgs_progress_show(job->progress, "images    %6u/%u", ++*done, shots->n);
+    }
+    adcgs_video_close(&video);
+    return status;
+}
+
+static adcgs_status make_camera_folder(const adcgs_import_job *job, const char *parent, uint32_t camera)
+{
+    char *name = adcgs_path("%s/%s", parent, job->shots.cameras[camera].folder);
+    const adcgs_status status = name ? adcgs_import_make_folder(job, name)
+                                     : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", parent);
+    free(name);
+    return status;
+}
+
+adcgs_status adcgs_import_pictures(adcgs_import_job *job)
+{
+    uint32_t done = 0;
+    ADCGS_TRY(adcgs_import_make_folder(job, "images"));
+    if (job->options->masks)
+        ADCGS_TRY(adcgs_import_make_folder(job, "masks"));
+    for (uint32_t c = 0; c < job->shots.n_cameras; c++) {
+        ADCGS_TRY(make_camera_folder(job, "images", c));
+        if (job->options->masks)
+            ADCGS_TRY(make_camera_folder(job, "masks", c));
+        ADCGS_TRY(make_shots(job, c, &done));
+    }
+    if (job->options->masks && !job->has_masks)
+        return adcgs_fail(job->error, ADCGS_ERR_DATA, "%s: no mask there has the name of an image or of a camera, such as "
+                          "%s.png or %s.png", job->options->masks, job->shots.shots[0].stem, job->shots.cameras[0].name);
+    job->report->width = job->shots.shots[0].width;
+    job->report->height = job->shots.shots[0].height;
+    return ADCGS_OK;
+}
+
+/* ---- Videos ---- */
+
+static adcgs_status copy_video(const adcgs_import_job *job, const char *from, const char *to)
+{
+    char buffer[1 << 16];
+    FILE *file;
+    adcgs_atomic out;
+    ADCGS_TRY(adcgs_file_open(&file, from, job->error));
+    adcgs_status status = adcgs_atomic_open(&out, to, job->error);
+    for (size_t n = 1; status == ADCGS_OK && n;) {
+        n = fread(buffer, 1, sizeof buffer, file);
+        fwrite(buffer, 1, n, out.file); /* closing the file reports errors */
+        status = adcgs_import_goes_on(job);
+    }
+    if (status == ADCGS_OK && ferror(file))
+        status = adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot read: %s", from, strerror(errno));
+    fclose(file);
+    if (status == ADCGS_OK)
+        return adcgs_atomic_commit(&out, job->error);
+    adcgs_atomic_abort(&out);
+    return status;
+}
+
+adcgs_status adcgs_import_videos(adcgs_import_job *job)
+{
+    ADCGS_TRY(adcgs_import_make_folder(job, "videos"));
+    for (uint32_t i = 0; i < job->shots.n_cameras; i++) {
+        const adcgs_shot_camera *camera = &job->shots.cameras[i];
+        char *to = adcgs_path("%s/videos/%s.%s", job->folder, camera->name, adcgs_extension(camera->video));
+        adcgs_status status = !to                  ? adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", job->folder)
+                              : adcgs_is_there(to) ? ADCGS_OK
+                                                   : copy_video(job, camera->video, to);
+        free(to);
+        ADCGS_TRY(status);
+        if (job->options->masks)
+            ADCGS_TRY(adcgs_import_camera_mask(job, i));
+        adcgs_progress_show(job->progress, "videos    %6u/%u", i + 1, job->shots.n_cameras);
+    }
+    return ADCGS_OK;
+}

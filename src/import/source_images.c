@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Lists of images and cameras. */
+#include "config.h"
+
+#include "import/source_images.h"
+
+#include "data/paths.h"
+#include "io/photo.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+
+#define SHOTS_MAX 10000 /* limit of cameras in a scene file */
+
+void adcgs_shots_clear(adcgs_shots *shots)
+{
+    for (uint32_t i = 0; i < shots->n; i++)
+        free(shots->shots[i].path);
+    for (uint32_t i = 0; i < shots->n_cameras; i++)
+        free(shots->cameras[i].video);
+    free(shots->shots);
+    free(shots->cameras);
+    *shots = (adcgs_shots){0};
+}
+
+char *adcgs_shot_path(const adcgs_shots *shots, const adcgs_shot *shot, const char *folder)
+{
+    return adcgs_path("%s/%s/%s.%s", folder, shots->cameras[shot->camera].folder, shot->stem, shot->end);
+}
+
+void adcgs_shot_fit(int *width, int *height, int side)
+{
+    const int longer = ADCGS_MAX(*width, *height);
+    if (longer <= side)
+        return;
+    *width = ADCGS_MAX(1, (int)(((int64_t)*width * side + longer / 2) / longer));
+    *height = ADCGS_MAX(1, (int)(((int64_t)*height * side + longer / 2) / longer));
+}
+
+/* ---- Lists that grow ---- */
+
+/**
+ * Makes a name that every program accepts: letters, digits and -, with _ for others. It is cut so that a number fits behind it.
+ */
+static void clean_name(char out[ADCGS_SHOT_NAME], const char *text)
+{
+    snprintf(out, ADCGS_SHOT_NAME, "%.50s", text);
+    for (char *c = out; *c; c++)
+        *c = isalnum((unsigned char)*c) || *c == '-' ? *c : '_';
+    if (!*out)
+        strcpy(out, "_");
+}
+
+/** Makes a name unique by appending a number. names are `size` bytes apart; the first n are used. */
+static void make_unique(char name[ADCGS_SHOT_NAME], const char *names, uint32_t n, size_t size)
+{
+    char wanted[ADCGS_SHOT_NAME];
+    memcpy(wanted, name, sizeof wanted);
+    for (uint32_t i = 0, number = 2; i < n;) {
+        if (strcmp(name, names + i * size)) {
+            i++;
+            continue;
+        }
+        snprintf(name, ADCGS_SHOT_NAME, "%.50s-%u", wanted, number++);
+        i = 0;
+    }
+}
+
+/** Makes room for one more element in an array that grows by doubling; NULL, with a message, on failure. */
+static void *grow(void *array, uint32_t n, size_t element, adcgs_error *error)
+{
+    if (n >= SHOTS_MAX) {
+        adcgs_fail(error, ADCGS_ERR_DATA, "more than %d images: give fewer, or for a video use --frames", SHOTS_MAX);
+        return NULL;
+    }
+    void *more = n & (n - 1) ? array : realloc(array, (n ? 2 * (size_t)n : 1) * element);
+    if (!more)
+        adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the list of images");
+    return more;
+}
+
+adcgs_shot *adcgs_shots_add(adcgs_shots *shots, uint32_t camera, const char *stem, adcgs_error *error)
+{
+    adcgs_shot *all = grow(shots->shots, shots->n, sizeof *all, error);
+    if (!all)
+        return NULL;
+    shots->shots = all;
+    adcgs_shot *shot = &all[shots->n];
+    *shot = (adcgs_shot){.camera = camera, .turn = ADCGS_PHOTO_UPRIGHT};
+    clean_name(shot->stem, stem);
+    if (shots->kind != ADCGS_FOOTAGE_FILM || !shots->cameras[camera].video) /* frames of one video have numbers */
+        make_unique(shot->stem, all[0].stem, shots->n, sizeof *all);
+    shots->n++;
+    shots->cameras[camera].shots++;
+    return shot;
+}
+
+adcgs_shot_camera *adcgs_shots_add_camera(adcgs_shots *shots, const char *name, adcgs_error *error)
+{
+    adcgs_shot_camera *all = grow(shots->cameras, shots->n_cameras, sizeof *all, error);
+    if (!all)
+        return NULL;
+    shots->cameras = all;
+    adcgs_shot_camera *camera = &all[shots->n_cameras];
+    *camera = (adcgs_shot_camera){.frames = 0};
+    clean_name(camera->name, name);
+    make_unique(camera->name, all[0].name, shots->n_cameras, sizeof *all);
+    memcpy(camera->folder, camera->name, sizeof camera->folder);
+    shots->n_cameras++;
+    return camera;
+}

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The player's state, and its changes by events. It uses no window, thread or file: events and the time are inputs, and the
+ * desired view can be read from the state.
+ */
+#ifndef ADCGS_PLAY_PLAY_STATE_H
+#define ADCGS_PLAY_PLAY_STATE_H
+
+#include "base/base.h"
+#include "camera/orbit_control.h"
+#include "play/event.h"
+#include "play/play_clock.h"
+
+/* The time bar: its height in pixels of letters, and the room for the time on its right in letters. */
+#define ADCGS_PLAY_BAR_HEIGHT 14
+#define ADCGS_PLAY_BAR_COLUMNS 13
+
+typedef enum adcgs_play_drag {
+    ADCGS_DRAG_NONE,
+    ADCGS_DRAG_ORBIT,
+    ADCGS_DRAG_PAN,
+    ADCGS_DRAG_BAR
+} adcgs_play_drag;
+
+typedef enum adcgs_play_shot {
+    ADCGS_SHOT_NONE,
+    ADCGS_SHOT_PNG,
+    ADCGS_SHOT_EXR
+} adcgs_play_shot;
+
+typedef struct adcgs_rect {
+    int x, y, width, height;
+} adcgs_rect;
+
+typedef struct adcgs_play_state {
+    adcgs_orbit_control control;
+    adcgs_play_clock clock;
+    adcgs_camera home;            /**< the view of reset */
+    const adcgs_camera *stored;   /**< the stream's cameras, [cameras] */
+    int cameras;
+    int jumped;                   /**< the last selected stored camera; -1: none, or moved since */
+    int layers, layers_max;       /**< of the stream: used, and present; 1..5 */
+    int width, height;            /**< of the window, pixels */
+    double density;               /**< pixels per unit of the desktop */
+
+    int flying;                   /**< keys and mouse move the camera freely */
+    double speed;                 /**< of flying: scene units per second */
+    unsigned held;                /**< flight keys that are held, a bit for each */
+    int shift;
+    adcgs_play_drag drag;
+    double moved;                 /**< when the user last moved the camera or the time */
+
+    int bar, statistics, help;    /**< visible overlays */
+    char message[200];
+    double message_end;           /**< when the message disappears */
+
+    adcgs_play_shot shot;         /**< requested screenshot; reset when it is taken */
+    int key_frame;                /**< request: 1 to add a key frame, -1 to remove the last; reset when it is done */
+    int record;                   /**< a video is recorded */
+    long recorded;                /**< its frames so far */
+    int full;                     /**< full screen is requested */
+    int quit;
+    double now;                   /**< wall clock at the last tick */
+} adcgs_play_state;
+
+/** Starts at the home camera, paused at the first frame. stored must live as long as the state. */
+void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *stored);
+void adcgs_play_resize(adcgs_play_state *state, int width, int height, double density);
+/** Applies an event. */
+void adcgs_play_event(adcgs_play_state *state, const adcgs_event *event);
+/** Applies the passing of time; now is in seconds. */
+void adcgs_play_tick(adcgs_play_state *state, double now);
+
+/** True if the image moves: playing, flying, or moved by the user just now. */
+int adcgs_play_moving(const adcgs_play_state *state);
+/** The rectangle of the time bar in the window, without the time on its right; width 0 if it is hidden. */
+adcgs_rect adcgs_play_bar(const adcgs_play_state *state);
+/** Pixels of the window per pixel of a letter. */
+int adcgs_play_text_size(const adcgs_play_state *state);
+
+#endif

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Pose errors measured from images alone, before training. */
+#ifndef ADCGS_STEREO_POSE_ERROR_H
+#define ADCGS_STEREO_POSE_ERROR_H
+
+#include "stereo/rig.h"
+
+/** Compares each camera with the two nearest cameras of similar viewing direction. Leaves out->pixels unchanged. */
+adcgs_status adcgs_stereo_poses_off(const adcgs_stereo_rig *rig, adcgs_stereo_off *out, adcgs_pool *pool, adcgs_error *error);
+
+#endif

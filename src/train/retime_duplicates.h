@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Duplicated images. A recorder that misses a frame repeats the previous one. Such an image shows the previous frame, and
+ * training at its own timestamp would blur moving content over both positions.
+ */
+#ifndef ADCGS_TRAIN_RETIME_DUPLICATES_H
+#define ADCGS_TRAIN_RETIME_DUPLICATES_H
+
+#include "train/state.h"
+
+/**
+ * Sets trainer->doubled for reporting and, if configured, the timestamps of the training views in [0,1]. A duplicated image
+ * (data/faults.h) gets the timestamp of the previous image. glances: of all training views.
+ */
+adcgs_status adcgs_doubled_find(adcgs_trainer *trainer, const adcgs_glance *glances, adcgs_error *error);
+
+#endif

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file One view pass. */
+#include "train/view_pass.h"
+
+#include "grad/random.h"
+#include "train/tier_assignment.h"
+#include "train/train_views.h"
+
+/* Of the run: earlier renders are too inaccurate for gains. */
+static const double EXPOSURE_FROM = 0.02;
+/* View passes ahead for which images are prefetched. */
+enum { PICTURES_AHEAD = 8 };
+
+int adcgs_look_is_rated(const adcgs_trainer *t, double progress)
+{
+    return progress >= t->config.rate_start && !t->config.without_rate && !t->frozen;
+}
+
+static int follows_exposure(const adcgs_trainer *t, double progress)
+{
+    return progress >= EXPOSURE_FROM && t->exposure.n;
+}
+
+static adcgs_pass_mode mode_of(const adcgs_trainer *t, double progress, uint32_t number)
+{
+    const adcgs_train_config *c = &t->config;
+    const adcgs_quant quant = t->frozen ? ADCGS_QUANT_NONE : t->rounding ? ADCGS_QUANT_ROUND :
+                              progress >= c->quant_noise_start && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
+    return (adcgs_pass_mode){ .quant = quant,
+                              .deform = t->f->follows ? ADCGS_DEFORM_ALL :
+                                        progress < c->deform_start && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE :
+                                        progress < c->fine_start   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
+                              .bf16 = c->bf16,
+                              .dropout = progress >= c->quant_round_start ? 0 : c->dropout,
+                              .seed = (uint32_t)adcgs_random64(c->seed, 3000, number) };
+}
+
+/** Whether a view's image contains one of an anchor's primitives, by its centre or by what it covers. */
+static int is_in_view(const adcgs_trainer *t, const adcgs_view *v, uint32_t anchor)
+{
+    const float *const *mean = t->pass->primitives.mean;
+    for (int k = 0; k < t->f->params.k; k++) {
+        const size_t slot = adcgs_fmodel_slot(t->f, anchor, k);
+        size_t at;
+        if (t->pass->grads.weight[slot] > 0 ||
+            adcgs_view_pixel(v, (const float[]){ mean[0][slot], mean[1][slot], mean[2][slot] }, &at))
+            return 1;
+    }
+    return 0;
+}
+
+static void add_stats(const adcgs_trainer *t, const adcgs_view *v, const adcgs_raster_grads *grads, adcgs_train_stats *stats)
+{
+    const size_t slots = t->pass->primitives.n;
+    const float *weight = t->pass->grads.weight, *screen = grads->screen, *opacity = t->pass->primitives.opacity;
+    /* Psi is counted in pixels of the full resolution. */
+    const float area = (float)(t->divide * t->divide);
+    for (size_t i = 0; i < slots; i++) {
+        stats->weight[i] += area * weight[i];
+        stats->opacity[i] += opacity[i];
+    }
+    for (size_t i = 0; screen && i < slots; i++)
+        stats->significance[i] += area * weight[i] * screen[i];
+    for (uint32_t i = 0; i < t->f->n; i++) {
+        const float presence = adcgs_fmodel_presence(t->f, i, t->pass->t);
+        stats->presence[i] += presence;
+        stats->in_view[i] += is_in_view(t, v, i) ? presence : 0;
+    }
+    stats->n++;
+}
+
+/** Renders the view, and computes the gradients of its image loss with respect to the primitives. */
+static adcgs_status look_at_picture(adcgs_trainer *t, double progress, uint32_t number, const adcgs_raster_grads *grads,
+                                    adcgs_seen *seen, adcgs_error *error)
+{
+    const uint32_t picked = adcgs_view_pick(t, number), n = t->config.batch;
+    const adcgs_view *v = &t->views[picked].view;
+    adcgs_raster_grads all = *grads;
+    adcgs_loss_value value;
+    const float *target;
+    ADCGS_TRY(adcgs_view_draw(t, v, picked, t->image, 1, error));
+    ADCGS_TRY(adcgs_trainer_target(t, picked, follows_exposure(t, progress) ? &seen->sums : NULL, &target, error));
+    adcgs_pictures_expect(t->pictures, adcgs_view_pick(t, number + (PICTURES_AHEAD + n - 1) / n * n));
+    ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
+    seen->loss = value.loss;
+    seen->mse = value.mse;
+    return adcgs_view_draw_back(t, v, picked, &all, error);
+}
+
+/** Adds the penalties of primitives and of their motion. */
+static adcgs_status add_prices(adcgs_trainer *t, double progress, uint32_t number, const adcgs_view *v, adcgs_deform deform,
+                               adcgs_raster_grads *grads, adcgs_error *error)
+{
+    const adcgs_train_config *c = &t->config;
+    if (c->scale_reg_weight > 0 && progress >= c->scale_reg_start)
+        adcgs_scale_penalty(&t->pass->primitives, &t->viewpoints, c->scale_reg_weight, grads->scale);
+    if (c->distortion_weight > 0 && number % (uint32_t)c->distortion_period == 0)
+        ADCGS_TRY(adcgs_distortion_add(&t->distortion, t->raster, t->back, &t->pass->primitives, v, ADCGS_SCREEN_FILTER,
+                                       c->distortion_weight * (float)c->distortion_period, grads, NULL, error));
+    t->pass->pull = NULL;
+    if (c->rigidity_weight > 0 && deform && t->f->mlp[ADCGS_P_OMEGA].n) {
+        adcgs_rigidity_pull(&t->rigid, t->pass, t->f, c->rigidity_weight);
+        t->pass->pull = t->rigid.pull;
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_look(adcgs_trainer *t, double progress, uint32_t number, adcgs_train_stats *stats, adcgs_seen *seen,
+                        adcgs_error *error)
+{
+    const adcgs_train_config *c = &t->config;
+    const uint32_t picked = adcgs_view_pick(t, number);
+    const adcgs_train_view *v = &t->views[picked];
+    const adcgs_pass_mode mode = mode_of(t, progress, number);
+    const int rated = adcgs_look_is_rated(t, progress);
+    /* A rounding pass updates the means of the groups that it measures, so all passes of an iteration use the same groups. */
+    const uint32_t turn = mode.quant == ADCGS_QUANT_ROUND ? t->iteration : number;
+    adcgs_raster_grads grads = t->pass->grads;
+    if (progress >= c->densify_until) /* only growth needs it */
+        grads.screen = NULL;
+    adcgs_pass_forward(t->pass, t->f, v->t, &mode);
+    ADCGS_TRY(look_at_picture(t, progress, number, &grads, seen, error));
+    add_stats(t, &v->view, &grads, stats);
+    ADCGS_TRY(add_prices(t, progress, number, &v->view, mode.deform, &grads, error));
+    adcgs_rate rate = { .total = 0 };
+    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)adcgs_price_of_bit(t) : 0, c->rate_period,
+                        (int)(turn % (uint32_t)c->rate_period), rated ? &rate : NULL);
+    memcpy(seen->bits, rate.bits, sizeof seen->bits);
+    return adcgs_tiers_learn(t, picked, &mode, error);
+}
+
+void adcgs_look_note(adcgs_trainer *t, double progress, uint32_t number, const adcgs_seen *seen)
+{
+    if (follows_exposure(t, progress))
+        adcgs_exposure_follow(&t->exposure, adcgs_view_pick(t, number), &seen->sums);
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file One view pass: its loss, the rate and the penalties, and their gradients. */
+#ifndef ADCGS_TRAIN_VIEW_PASS_H
+#define ADCGS_TRAIN_VIEW_PASS_H
+
+#include "train/state.h"
+
+/** True if the rate is part of the loss. */
+int adcgs_look_is_rated(const adcgs_trainer *trainer, double progress);
+
+/**
+ * Runs the view pass with this number, counted from the start of the run. Gradients are added to f->param[].g, visibility of
+ * primitives to stats, and the rest goes to *seen. Except for the means used in rounding, nothing else changes, so passes of one
+ * iteration are independent. adcgs_look_note() does the rest.
+ */
+adcgs_status adcgs_look(adcgs_trainer *trainer, double progress, uint32_t number, adcgs_train_stats *stats, adcgs_seen *seen,
+                        adcgs_error *error);
+/** Called after an iteration's view passes, for each in order: updates the exposure of its camera. */
+void adcgs_look_note(adcgs_trainer *trainer, double progress, uint32_t number, const adcgs_seen *seen);
+
+#endif

@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The page's scene: takes bytes, gives a summary and exact frames. One scene per instance. */
+#include "config.h"
+
+#include "api/decoder_priv.h"
+#include "api/frame_samples.h"
+#include "base/digest.h"
+#include "camera/path.h"
+#include "stream/chunk.h"
+#include "wasm/export.h"
+#include "wasm/page_scene.h"
+#include "wasm/wasm_threads.h"
+
+#include <adcgs/adcgs.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/** Maximum size of a stream that is kept: opening it again needs twice as much, in a memory of 4 GiB. */
+#define BYTES_MOST (UINT64_C(1) << 30)
+
+static struct {
+    adcgs_decoder *decoder;
+    adcgs_info info;
+    adcgs_camera *cameras;
+    adcgs_camera home;
+    adcgs_error error;
+    char fault[sizeof ((adcgs_error *)0)->text]; /* the first concealed fault */
+    float *values;
+    uint8_t *rgba;
+    size_t pixels; /* room in both */
+    char digest[33];
+} scene;
+
+adcgs_decoder *adcgs_page_decoder(void)
+{
+    return scene.decoder;
+}
+
+void *PAGE_EXPORT(page_alloc)(size_t bytes)
+{
+    return malloc(bytes);
+}
+
+void PAGE_EXPORT(page_free)(void *pointer)
+{
+    free(pointer);
+}
+
+const char *PAGE_EXPORT(page_error)(void)
+{
+    return scene.error.text;
+}
+
+const char *PAGE_EXPORT(page_fault)(void)
+{
+    return scene.fault;
+}
+
+static void note_fault(void *user, adcgs_log_level level, const char *text)
+{
+    if (level == ADCGS_LOG_WARNING && !*scene.fault)
+        snprintf(scene.fault, sizeof scene.fault, "%s", text);
+}
+
+static adcgs_config make_config(int layers)
+{
+    adcgs_config config;
+    adcgs_config_init(&config, sizeof config);
+    config.threads = 1;
+    config.pool = adcgs_page_pool();
+    config.layers = layers;
+    config.log = note_fault;
+    *scene.fault = 0;
+    return config;
+}
+
+/** Start again, with a stream whose bytes arrive over time. */
+int PAGE_EXPORT(page_open)(void)
+{
+    const adcgs_config config = make_config(0);
+    adcgs_close(&scene.decoder);
+    return adcgs_open_push(&scene.decoder, &config, &scene.error);
+}
+
+/** Open a whole stream with fewer layers, or the intact parts of a damaged one. On failure the previous stream stays open. */
+int PAGE_EXPORT(page_reopen)(const void *data, size_t bytes, int layers, int conceal)
+{
+    adcgs_config config = make_config(layers);
+    adcgs_decoder *decoder;
+    config.conceal = conceal;
+    const adcgs_status status = adcgs_open_memory(&decoder, data, bytes, &config, &scene.error);
+    if (status != ADCGS_OK)
+        return status;
+    adcgs_close(&scene.decoder);
+    scene.decoder = decoder;
+    return status;
+}
+
+/** Push bytes. \return the highest arrival (adcgs_arrival), or a status. */
+int PAGE_EXPORT(page_push)(const uint8_t *data, size_t bytes)
+{
+    int most = ADCGS_ARRIVED_NOTHING;
+    for (size_t used = 0; bytes && most != ADCGS_ARRIVED_END; data += used, bytes -= used) {
+        adcgs_arrival arrived;
+        const adcgs_status status = adcgs_push(scene.decoder, data, bytes, &used, &arrived, &scene.error);
+        if (status != ADCGS_OK)
+            return status;
+        most = ADCGS_MAX(most, (int)arrived);
+    }
+    return most;
+}
+
+/** The maximum size of the stream, by its level or, before HEAD, by level 2. */
+double PAGE_EXPORT(page_useful)(void)
+{
+    adcgs_info info;
+    const int known = adcgs_get_info(scene.decoder, &info, sizeof info, NULL) == ADCGS_OK;
+    const uint64_t bytes = known ? adcgs_level_get(info.level)->file_bytes : ADCGS_SALVAGE_BYTES;
+    return (double)ADCGS_MIN(bytes, BYTES_MOST);
+}
+
+int PAGE_EXPORT(page_end)(void)
+{
+    return adcgs_push_end(scene.decoder, &scene.error);
+}
+
+const adcgs_info *PAGE_EXPORT(page_info)(void)
+{
+    return adcgs_get_info(scene.decoder, &scene.info, sizeof scene.info, &scene.error) == ADCGS_OK ? &scene.info : NULL;
+}
+
+/** Variance that the renderer adds to the splats' footprints, square pixels. */
+float PAGE_EXPORT(page_filter)(void)
+{
+    return scene.decoder->stream.screen_filter;
+}
+
+size_t PAGE_EXPORT(page_info_size)(void)
+{
+    return sizeof(adcgs_info);
+}
+
+size_t PAGE_EXPORT(page_camera_size)(void)
+{
+    return sizeof(adcgs_camera);
+}
+
+/** The stored cameras, info.cameras of them. */
+const adcgs_camera *PAGE_EXPORT(page_cameras)(void)
+{
+    const adcgs_info *info = page_info();
+    free(scene.cameras);
+    scene.cameras = info ? calloc((size_t)info->cameras + 1, sizeof *scene.cameras) : NULL;
+    for (int i = 0; scene.cameras && i < info->cameras; i++)
+        if (adcgs_get_camera(scene.decoder, i, &scene.cameras[i], &scene.error) != ADCGS_OK)
+            return NULL;
+    return scene.cameras;
+}
+
+/** The first view, chosen as in the player. */
+const adcgs_camera *PAGE_EXPORT(page_home)(void)
+{
+    const adcgs_info *info = page_info();
+    adcgs_camera_path frames;
+    if (!info)
+        return NULL;
+    const adcgs_camera_path_request request = {.has_times = 1, .begin = info->time_start, .end = info->time_start};
+    if (adcgs_camera_path_make(&frames, scene.decoder, &request, &scene.error) != ADCGS_OK)
+        return NULL;
+    scene.home = frames.frame[0].camera;
+    adcgs_camera_path_free(&frames);
+    return &scene.home;
+}
+
+static adcgs_status reserve(size_t pixels)
+{
+    if (pixels <= scene.pixels)
+        return ADCGS_OK;
+    free(scene.values);
+    free(scene.rgba);
+    scene.values = malloc(3 * pixels * sizeof *scene.values);
+    scene.rgba = malloc(4 * pixels);
+    scene.pixels = scene.values && scene.rgba ? pixels : 0;
+    return scene.pixels ? ADCGS_OK : adcgs_fail(&scene.error, ADCGS_ERR_MEMORY, "out of memory for an image");
+}
+
+/** Render an exact frame, of the first tiers only if tiers is not 0; with digest, also its MD5. */
+int PAGE_EXPORT(page_draw)(const adcgs_camera *camera, double time, int tiers, int digest)
+{
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    ADCGS_TRY(adcgs_set_tiers(scene.decoder, tiers, &scene.error));
+    ADCGS_TRY(reserve(pixels));
+    adcgs_frame frame = {.width = camera->width, .height = camera->height, .rgb = scene.values};
+    ADCGS_TRY(adcgs_render(scene.decoder, camera, time, &frame, &scene.error));
+    adcgs_frame_to_u8(&frame, scene.rgba);
+    for (size_t i = pixels; i-- > 0;) { /* from three samples to four, in place */
+        const uint8_t rgb[3] = {scene.rgba[3 * i], scene.rgba[3 * i + 1], scene.rgba[3 * i + 2]};
+        memcpy(scene.rgba + 4 * i, rgb, sizeof rgb);
+        scene.rgba[4 * i + 3] = 255;
+    }
+    *scene.digest = 0;
+    if (digest) {
+        uint8_t bytes[16];
+        adcgs_frame_digest(&frame, bytes);
+        adcgs_md5_hex(bytes, scene.digest);
+    }
+    return ADCGS_OK;
+}
+
+const uint8_t *PAGE_EXPORT(page_pixels)(void)
+{
+    return scene.rgba;
+}
+
+const char *PAGE_EXPORT(page_digest)(void)
+{
+    return scene.digest;
+}

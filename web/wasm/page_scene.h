@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The scene of an instance of the module. */
+#ifndef ADCGS_WEB_PAGE_SCENE_H
+#define ADCGS_WEB_PAGE_SCENE_H
+
+#include <adcgs/types.h>
+
+/** NULL before the first bytes. */
+adcgs_decoder *adcgs_page_decoder(void);
+
+#endif
