@@ -20,7 +20,7 @@ enum {
 #define SEEN_ENOUGH 0.05     /* share that confirms the given poses; low, since a camera in a room sees few points of it */
 #define SEEN_BETTER 3.0      /* minimum ratio of the share under another reading to the share as given */
 #define SEEN_MORE 0.3        /* minimum increase of that share */
-enum { MOMENTS = 12 };       /* maximum number of frames whose images are compared */
+enum { FRAMES = 12 };        /* maximum number of frames whose images are compared */
 #define MOST_OF 0.9          /* share of the cameras that must face the common point */
 #define AROUND 0.9           /* length of the mean axis; above it, all cameras look in nearly one direction and share no target */
 #define CROSSED 0.2          /* mean distance of the axes from the common point, relative to the mean distance of the cameras */
@@ -29,7 +29,7 @@ enum { MOMENTS = 12 };       /* maximum number of frames whose images are compar
 /* ---- Readings ---- */
 
 /** Copies the scene with the poses of its training views converted from `reading`. The caller frees the views. */
-static adcgs_status read_as(adcgs_scene *out, const adcgs_scene *scene, adcgs_reading reading, adcgs_error *error)
+static adcgs_status read_as(adcgs_scene *out, const adcgs_scene *scene, adcgs_axes_reading reading, adcgs_error *error)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
     adcgs_scene_view *views = adcgs_alloc(NULL, n, sizeof *views, error);
@@ -115,26 +115,26 @@ static int look_in(const places *p)
     return p->before >= MOST_OF && p->axis < AROUND && p->crossed < CROSSED;
 }
 
-static adcgs_reading judge_places(const places p[ADCGS_READINGS])
+static adcgs_axes_reading judge_places(const places p[ADCGS_READINGS])
 {
     if (look_in(&p[ADCGS_READ_TURNED]) && !look_in(&p[ADCGS_READ_AS_GIVEN]))
         return ADCGS_READ_TURNED;
     /* For cameras on a circle around the world origin, the world-to-camera translation is the same for all. */
     for (int r = ADCGS_READ_INVERSE; r < ADCGS_READINGS; r++)
         if (look_in(&p[r]) && p[ADCGS_READ_AS_GIVEN].apart < ONE_PLACE * p[r].distance)
-            return (adcgs_reading)r;
+            return (adcgs_axes_reading)r;
     return ADCGS_READ_AS_GIVEN;
 }
 
 /* ---- Images ---- */
 
-int adcgs_stereo_poses_fit(const adcgs_stereo_off *off)
+int adcgs_stereo_poses_fit(const adcgs_stereo_pose_error *off)
 {
     return off->pairs >= ADCGS_STEREO_PAIRS && off->median < FITS;
 }
 
 /** True if more cameras fit where the old poses do not fit, or as many cameras fit with less than half the error. */
-static int is_better(const adcgs_stereo_off *off, const adcgs_stereo_off *than)
+static int is_better(const adcgs_stereo_pose_error *off, const adcgs_stereo_pose_error *than)
 {
     if (!adcgs_stereo_poses_fit(than))
         return adcgs_stereo_poses_fit(off) && off->pairs > than->pairs;
@@ -142,18 +142,18 @@ static int is_better(const adcgs_stereo_off *off, const adcgs_stereo_off *than)
 }
 
 /** Measures pose errors from the images of a few frames. */
-static adcgs_status match_pairs(adcgs_stereo_off *out, const adcgs_scene *scene, const places *p, adcgs_pool *pool,
+static adcgs_status match_pairs(adcgs_stereo_pose_error *out, const adcgs_scene *scene, const places *p, adcgs_pool *pool,
                                 adcgs_error *error)
 {
-    adcgs_stereo_options options = {.moments = MOMENTS, .scale = fmax(p->distance, 1e-300)};
+    adcgs_stereo_options options = {.frames = FRAMES, .scale = fmax(p->distance, 1e-300)};
     adcgs_stereo_rig *rig = adcgs_alloc(NULL, 1, sizeof *rig, error);
-    *out = (adcgs_stereo_off){.pairs = 0};
+    *out = (adcgs_stereo_pose_error){.pairs = 0};
     if (!rig)
         return adcgs_alloc_status(error);
     adcgs_pose_centre(scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN], options.origin);
     adcgs_status status = adcgs_stereo_rig_init(rig, scene, &options, error);
     if (status == ADCGS_OK)
-        status = adcgs_stereo_poses_off(rig, out, pool, error);
+        status = adcgs_stereo_measure_pose_error(rig, out, pool, error);
     adcgs_stereo_rig_clear(rig);
     adcgs_free(NULL, rig);
     return status;
@@ -161,35 +161,35 @@ static adcgs_status match_pairs(adcgs_stereo_off *out, const adcgs_scene *scene,
 
 /* ---- Decision ---- */
 
-static void judge_points(adcgs_axes_doubt *out, const double seen[ADCGS_READINGS])
+static void judge_points(adcgs_axes_check *out, const double seen[ADCGS_READINGS])
 {
-    adcgs_reading best = ADCGS_READ_AS_GIVEN;
+    adcgs_axes_reading best = ADCGS_READ_AS_GIVEN;
     for (int r = ADCGS_READ_TURNED; r < ADCGS_READINGS; r++)
-        best = seen[r] > seen[best] ? (adcgs_reading)r : best;
+        best = seen[r] > seen[best] ? (adcgs_axes_reading)r : best;
     if (seen[ADCGS_READ_AS_GIVEN] < SEEN_WELL && seen[best] >= SEEN_BETTER * seen[ADCGS_READ_AS_GIVEN] &&
         seen[best] >= seen[ADCGS_READ_AS_GIVEN] + SEEN_MORE)
-        *out = (adcgs_axes_doubt){best, ADCGS_BY_POINTS, seen[ADCGS_READ_AS_GIVEN], seen[best]};
+        *out = (adcgs_axes_check){best, ADCGS_BY_POINTS, seen[ADCGS_READ_AS_GIVEN], seen[best]};
 }
 
-static adcgs_status judge_pictures(adcgs_axes_doubt *out, const adcgs_scene readings[ADCGS_READINGS], const places *p,
-                                   const adcgs_stereo_off *given, adcgs_pool *pool, adcgs_error *error)
+static adcgs_status judge_pictures(adcgs_axes_check *out, const adcgs_scene readings[ADCGS_READINGS], const places *p,
+                                   const adcgs_stereo_pose_error *given, adcgs_pool *pool, adcgs_error *error)
 {
-    adcgs_stereo_off best = *given;
+    adcgs_stereo_pose_error best = *given;
     for (int r = ADCGS_READ_TURNED; r < ADCGS_READINGS; r++) {
-        adcgs_stereo_off off;
+        adcgs_stereo_pose_error off;
         ADCGS_TRY(match_pairs(&off, &readings[r], &p[r], pool, error));
         if (!is_better(&off, &best))
             continue;
-        *out = (adcgs_axes_doubt){.meant = (adcgs_reading)r, .by = ADCGS_BY_PICTURES};
+        *out = (adcgs_axes_check){.meant = (adcgs_axes_reading)r, .by = ADCGS_BY_IMAGES};
         best = off;
     }
     return ADCGS_OK;
 }
 
-static adcgs_status judge(adcgs_axes_doubt *out, const adcgs_scene readings[ADCGS_READINGS], const adcgs_stereo *found,
+static adcgs_status judge(adcgs_axes_check *out, const adcgs_scene readings[ADCGS_READINGS], const adcgs_stereo *found,
                           adcgs_pool *pool, adcgs_error *error)
 {
-    const adcgs_stereo_off *const off = &found->poses;
+    const adcgs_stereo_pose_error *const off = &found->poses;
     double seen[ADCGS_READINGS] = {0.0};
     places p[ADCGS_READINGS];
     for (int r = 0; r < ADCGS_READINGS && readings->points.n >= POINTS_LEAST; r++)
@@ -197,25 +197,25 @@ static adcgs_status judge(adcgs_axes_doubt *out, const adcgs_scene readings[ADCG
     judge_points(out, seen);
     const int vouched = seen[ADCGS_READ_AS_GIVEN] >= SEEN_ENOUGH && off->pairs < ADCGS_STEREO_PAIRS; /* and no image objects */
     if (out->meant != ADCGS_READ_AS_GIVEN || vouched ||
-        (found->n_moments && adcgs_stereo_poses_fit(off) && off->median < FITS_WELL))
+        (found->n_frames && adcgs_stereo_poses_fit(off) && off->median < FITS_WELL))
         return ADCGS_OK;
     for (int r = 0; r < ADCGS_READINGS; r++)
         p[r] = find_places(&readings[r]);
-    if (found->n_moments)
+    if (found->n_frames)
         ADCGS_TRY(judge_pictures(out, readings, p, off, pool, error));
     if (out->meant == ADCGS_READ_AS_GIVEN && seen[ADCGS_READ_AS_GIVEN] < SEEN_ENOUGH && !adcgs_stereo_poses_fit(off))
-        *out = (adcgs_axes_doubt){.meant = judge_places(p), .by = ADCGS_BY_PLACES};
+        *out = (adcgs_axes_check){.meant = judge_places(p), .by = ADCGS_BY_PLACES};
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_axes_doubt_find(adcgs_axes_doubt *out, const adcgs_scene *scene, const adcgs_stereo *found, adcgs_pool *pool,
-                                   adcgs_error *error)
+adcgs_status adcgs_axes_check_run(adcgs_axes_check *out, const adcgs_scene *scene, const adcgs_stereo *found, adcgs_pool *pool,
+                                  adcgs_error *error)
 {
     adcgs_scene readings[ADCGS_READINGS] = {{.directory = NULL}};
     adcgs_status status = ADCGS_OK;
-    *out = (adcgs_axes_doubt){.meant = ADCGS_READ_AS_GIVEN};
+    *out = (adcgs_axes_check){.meant = ADCGS_READ_AS_GIVEN};
     for (int r = 0; r < ADCGS_READINGS && status == ADCGS_OK; r++)
-        status = read_as(&readings[r], scene, (adcgs_reading)r, error);
+        status = read_as(&readings[r], scene, (adcgs_axes_reading)r, error);
     if (status == ADCGS_OK && scene->n_views[ADCGS_SPLIT_TRAIN])
         status = judge(out, readings, found, pool, error);
     for (int r = 0; r < ADCGS_READINGS; r++)

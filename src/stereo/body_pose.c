@@ -10,12 +10,12 @@ adcgs_stereo_pose adcgs_stereo_pose_at(const adcgs_stereo *s, uint32_t body, flo
 {
     const adcgs_stereo_pose *pose = s->body[body].pose;
     uint32_t next = 0;
-    while (next < s->n_moments && s->moment[next] < t)
+    while (next < s->n_frames && s->frame_time[next] < t)
         next++;
-    if (next == 0 || next == s->n_moments)
+    if (next == 0 || next == s->n_frames)
         return pose[next ? next - 1 : 0];
     const adcgs_stereo_pose *a = &pose[next - 1], *b = &pose[next];
-    const double u = (double)((t - s->moment[next - 1]) / (s->moment[next] - s->moment[next - 1]));
+    const double u = (double)((t - s->frame_time[next - 1]) / (s->frame_time[next] - s->frame_time[next - 1]));
     adcgs_stereo_pose out;
     double square = 0;
     for (int i = 0; i < 4; i++) {

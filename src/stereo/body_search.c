@@ -50,7 +50,7 @@ typedef struct work {
  * Finds the largest connected part of any frame, with a preference for frames near the middle of time. Sets *n to 0 if no part is
  * large enough.
  */
-static adcgs_status find_seed(work *w, int *moment, uint32_t *part, uint32_t *n, adcgs_error *error)
+static adcgs_status find_seed(work *w, int *frame, uint32_t *part, uint32_t *n, adcgs_error *error)
 {
     double most = 0;
     *n = 0;
@@ -67,7 +67,7 @@ static adcgs_status find_seed(work *w, int *moment, uint32_t *part, uint32_t *n,
         for (uint32_t k = 1; k <= parts; k++)
             if (size[k] >= SEED_LEAST && size[k] * (1 - EARLY * off) > most) {
                 most = size[k] * (1 - EARLY * off);
-                *moment = m;
+                *frame = m;
                 *part = k;
                 *n = size[k];
             }
@@ -76,11 +76,11 @@ static adcgs_status find_seed(work *w, int *moment, uint32_t *part, uint32_t *n,
     return ADCGS_OK;
 }
 
-static adcgs_status plant(work *w, int moment, uint32_t part, adcgs_error *error)
+static adcgs_status plant(work *w, int frame, uint32_t part, adcgs_error *error)
 {
-    const uint32_t begin = w->l.begin[moment];
+    const uint32_t begin = w->l.begin[frame];
     w->t.model.pixel = w->l.pixel;
-    for (uint32_t i = begin; i < w->l.begin[moment + 1]; i++)
+    for (uint32_t i = begin; i < w->l.begin[frame + 1]; i++)
         if (w->part[i] == part) {
             w->tried[i] = 1;
             ADCGS_TRY(adcgs_body_add(&w->t.model, &w->l.p[i], w->l.normal[i], error));
@@ -101,7 +101,7 @@ static int is_steady(const work *w)
         if (!w->t.known[m])
             continue;
         if (before[1] >= 0) {
-            adcgs_track_go_on(&w->t, &w->l, m, before, &on);
+            adcgs_track_extrapolate(&w->t, &w->l, m, before, &on);
             const double step = adcgs_track_between(&w->t, &w->t.place[before[0]].at, &w->t.place[m].at);
             off[n++] = adcgs_track_between(&w->t, &on, &w->t.place[m].at) / (LEAP_LEAST * w->t.model.pixel + LEAP * step);
         }
@@ -246,7 +246,7 @@ static void set_between(adcgs_stereo_pose *p, const adcgs_stereo_pose *a, const 
 
 static void fill(work *w, adcgs_stereo_body *b)
 {
-    const float *when = w->l.rig->moment;
+    const float *when = w->l.rig->frame_time;
     for (int m = 0; m < w->l.n; m++) {
         int before = m, after = m;
         while (before >= 0 && !w->t.known[before])
@@ -269,7 +269,7 @@ static int find_rest(const work *w)
     int best = -1;
     for (int m = 0; m < w->l.n; m++)
         if (w->t.known[m] &&
-            (best < 0 || fabsf(w->l.rig->moment[m] - 0.5f) < fabsf(w->l.rig->moment[best] - 0.5f)))
+            (best < 0 || fabsf(w->l.rig->frame_time[m] - 0.5f) < fabsf(w->l.rig->frame_time[best] - 0.5f)))
             best = m;
     return best;
 }
@@ -305,7 +305,7 @@ static adcgs_status write_body(work *w, adcgs_stereo_body *b, uint8_t number, ad
 static adcgs_status refine(work *w, int start, adcgs_error *error)
 {
     if (start >= 0)
-        adcgs_track_look_again(&w->t, &w->l, start);
+        adcgs_track_rematch(&w->t, &w->l, start);
     adcgs_track_refine(&w->t, &w->l, w->pool);
     ADCGS_TRY(adcgs_track_merge(&w->t, &w->l, error));
     adcgs_members_clean(&w->t, &w->l);
@@ -313,18 +313,18 @@ static adcgs_status refine(work *w, int start, adcgs_error *error)
 }
 
 /** Tracks and judges one seed. */
-static adcgs_status try_seed(work *w, int moment, uint32_t part, verdict *is, adcgs_error *error)
+static adcgs_status try_seed(work *w, int frame, uint32_t part, verdict *is, adcgs_error *error)
 {
     w->t = (adcgs_track){ .model = { .n = 0 } };
-    adcgs_status status = plant(w, moment, part, error);
+    adcgs_status status = plant(w, frame, part, error);
     if (status == ADCGS_OK)
-        status = adcgs_track_run(&w->t, &w->l, moment, w->pool, error);
+        status = adcgs_track_run(&w->t, &w->l, frame, w->pool, error);
     int known = 0;
     for (int m = 0; m < w->l.n; m++)
         known += w->t.known[m];
     const int rounds = known < KNOWN_SHARE * w->l.n ? 1 : REFINEMENTS;
     for (int k = 0; k < rounds && status == ADCGS_OK; k++)
-        status = refine(w, k == 1 ? moment : -1, error);
+        status = refine(w, k == 1 ? frame : -1, error);
     *is = status == ADCGS_OK ? judge(w) : IS_NONE;
     return status;
 }
@@ -334,12 +334,12 @@ static adcgs_status find_all(work *w, uint32_t most, adcgs_error *error)
     adcgs_stereo *out = w->out;
     for (int k = 0, vain = 0; k < TRIES && vain < VAIN && out->n_bodies < ADCGS_MIN(most, ADCGS_BODIES_MAX); k++) {
         uint32_t part, n;
-        int moment;
+        int frame;
         verdict is;
-        ADCGS_TRY(find_seed(w, &moment, &part, &n, error));
+        ADCGS_TRY(find_seed(w, &frame, &part, &n, error));
         if (!n)
             break;
-        adcgs_status status = try_seed(w, moment, part, &is, error);
+        adcgs_status status = try_seed(w, frame, part, &is, error);
         if (is == IS_BODY) {
             status = write_body(w, &out->body[out->n_bodies], (uint8_t)(out->n_bodies + 1), error);
             out->n_bodies += status == ADCGS_OK;
@@ -376,13 +376,13 @@ static void sort_bodies(adcgs_stereo *out)
 adcgs_status adcgs_stereo_find_bodies(adcgs_stereo *out, adcgs_stereo_rig *rig, uint32_t most, adcgs_pool *pool,
                                       adcgs_error *error)
 {
-    if (rig->n_moments < KNOWN_LEAST || out->n_moving < SEED_LEAST)
+    if (rig->n_frames < KNOWN_LEAST || out->n_moving < SEED_LEAST)
         return ADCGS_OK;
     work *w = adcgs_alloc(NULL, 1, sizeof *w, error);
     if (!w)
         return adcgs_alloc_status(error);
     *w = (work){ .out = out, .pool = pool };
-    adcgs_status status = adcgs_stereo_rig_soften(rig, error);
+    adcgs_status status = adcgs_stereo_rig_smooth(rig, error);
     if (status == ADCGS_OK)
         status = adcgs_layers_init(&w->l, out, rig, error);
     w->tried = adcgs_alloc(NULL, out->n_moving, 1, error);

@@ -200,7 +200,7 @@ void adcgs_cloud_normals(const adcgs_cloud *c, double reach, const adcgs_stereo_
         for (int k = 0; k < rig->n_cameras; k++) {
             const double *at = rig->camera[k].view.centre;
             double to[3] = { at[0] - c->p[i].x[0], at[1] - c->p[i].x[1], at[2] - c->p[i].x[2] };
-            if (!rig->camera[k].usual)
+            if (!rig->camera[k].background)
                 continue;
             adcgs_v3_normalise(to);
             faces += adcgs_v3_dot(to, out);

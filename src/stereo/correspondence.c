@@ -33,7 +33,7 @@ static float over_of(const float *grey, const uint8_t *known, int w, int x, int 
 }
 
 /** Correlations of a window, of mean 0 and norm 1, with the windows around n consecutive pixels of a row. */
-static void compare_row(const adcgs_outlook *o, const float own[WINDOW], int x, int y, int n, float *alike)
+static void compare_row(const adcgs_patch_image *o, const float own[WINDOW], int x, int y, int n, float *alike)
 {
     const int w = o->view->w;
     for (int i = 0; i < n; i++)
@@ -56,20 +56,20 @@ static int is_peak(const float *alike, int w)
 }
 
 /** True if a pixel is a keypoint: no adjacent window is similar. */
-static int is_mark(const adcgs_outlook *o, int x, int y)
+static int is_keypoint(const adcgs_patch_image *o, int x, int y)
 {
     float own[WINDOW], alike[9];
     const double at[2] = { x + 0.5, y + 0.5 };
     if (!(o->over[y * o->view->w + x] > 0) ||
-        !(adcgs_window_take(own, o->view, at, (const double[]){ 1, 0 }, (const double[]){ 0, 1 }) > ADCGS_WINDOW_TEXTURE))
+        !(adcgs_window_sample(own, o->view, at, (const double[]){ 1, 0 }, (const double[]){ 0, 1 }) > ADCGS_WINDOW_TEXTURE))
         return 0;
     for (int j = 0; j < 3; j++)
         compare_row(o, own, x - 1, y + j - 1, 3, alike + 3 * j);
     return is_peak(alike + 4, 3);
 }
 
-/** Chooses an even subset of the candidates, at most ADCGS_SIGHT_MARKS. */
-static void choose_marks(adcgs_outlook *o, const adcgs_depths *d)
+/** Chooses an even subset of the candidates, at most ADCGS_KEYPOINTS_MAX. */
+static void choose_keypoints(adcgs_patch_image *o, const adcgs_depths *d)
 {
     const int w = o->view->w, h = o->view->h;
     int all = 0;
@@ -78,16 +78,16 @@ static void choose_marks(adcgs_outlook *o, const adcgs_depths *d)
             for (int x = RADIUS + 1; x < w - RADIUS - 1; x += CELL) {
                 const int i = (y - d->y) * d->w + x - d->x;
                 if (x < d->x || y < d->y || x >= d->x + d->w || y >= d->y + d->h || d->quality[i] == ADCGS_DEPTH_NONE ||
-                    !is_mark(o, x, y))
+                    !is_keypoint(o, x, y))
                     continue;
                 all += !pass;
-                if (pass && (int64_t)seen++ * ADCGS_SIGHT_MARKS / ADCGS_MAX(all, ADCGS_SIGHT_MARKS) >= o->n_marks)
-                    o->mark[o->n_marks++] = (adcgs_mark){ x, y, 1 / (double)d->inverse[i] };
+                if (pass && (int64_t)seen++ * ADCGS_KEYPOINTS_MAX / ADCGS_MAX(all, ADCGS_KEYPOINTS_MAX) >= o->n_keypoints)
+                    o->keypoint[o->n_keypoints++] = (adcgs_keypoint){ x, y, 1 / (double)d->inverse[i] };
             }
 }
 
-adcgs_status adcgs_outlook_init(adcgs_outlook *o, const adcgs_stereo_view *view, const uint8_t *changes,
-                                const adcgs_depths *depths, adcgs_error *error)
+adcgs_status adcgs_patch_image_init(adcgs_patch_image *o, const adcgs_stereo_view *view, const uint8_t *unstable,
+                                    const adcgs_depths *depths, adcgs_error *error)
 {
     const int w = view->w, h = view->h, n = w * h;
     uint8_t *known = adcgs_alloc(NULL, (size_t)n, 1, error);
@@ -98,23 +98,23 @@ adcgs_status adcgs_outlook_init(adcgs_outlook *o, const adcgs_stereo_view *view,
         for (int i = 0; i < n; i++) {
             const float *const p = view->pixels + 4 * (size_t)i;
             o->grey[i] = (p[0] + p[1] + p[2]) * (1.0f / 3);
-            known[i] = p[3] > 0.99f && !changes[i];
+            known[i] = p[3] > 0.99f && !unstable[i];
         }
         for (int y = RADIUS; y < h - RADIUS; y++)
             for (int x = RADIUS; x < w - RADIUS; x++)
                 o->over[y * w + x] = over_of(o->grey, known, w, x, y);
         if (depths->quality)
-            choose_marks(o, depths);
+            choose_keypoints(o, depths);
     }
     adcgs_free(NULL, known);
     return known && o->grey && o->over ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
-void adcgs_outlook_clear(adcgs_outlook *o)
+void adcgs_patch_image_clear(adcgs_patch_image *o)
 {
     adcgs_free(NULL, o->grey);
     adcgs_free(NULL, o->over);
-    *o = (adcgs_outlook){ .n_marks = 0 };
+    *o = (adcgs_patch_image){ .n_keypoints = 0 };
 }
 
 /* ---- Search ---- */
@@ -136,7 +136,7 @@ static field field_about(const adcgs_stereo_view *v, const double at[2], int rea
 }
 
 /** Finds the unique pixel of the field with a similar window, to a fraction of a pixel. Returns 0 if there is none. */
-static int look(const adcgs_outlook *in, const float own[WINDOW], const field *f, float *alike, double at[2])
+static int look(const adcgs_patch_image *in, const float own[WINDOW], const field *f, float *alike, double at[2])
 {
     const int w = f->x1 - f->x0, h = f->y1 - f->y0;
     int best = -1;
@@ -172,11 +172,11 @@ static int turn_round(double right[2], double down[2])
     return 1;
 }
 
-void adcgs_sights_add(adcgs_sights *s, const adcgs_outlook *in, const adcgs_stereo_view *pose, const adcgs_outlook *other,
-                      int from, int every, int reach, float *alike)
+void adcgs_correspondences_add(adcgs_correspondences *s, const adcgs_patch_image *in, const adcgs_stereo_view *pose,
+                               const adcgs_patch_image *other, int from, int every, int reach, float *alike)
 {
-    for (int i = 0; i < other->n_marks && s->n < ADCGS_SIGHTS; i += every) {
-        const adcgs_mark *const m = &other->mark[i];
+    for (int i = 0; i < other->n_keypoints && s->n < ADCGS_CORRESPONDENCES_MAX; i += every) {
+        const adcgs_keypoint *const m = &other->keypoint[i];
         const double own_at[2] = { m->px + 0.5, m->py + 0.5 };
         double at[2] = { 0, 0 }, right[2] = { 1, 0 }, down[2] = { 0, 1 };
         float own[WINDOW];
@@ -184,13 +184,13 @@ void adcgs_sights_add(adcgs_sights *s, const adcgs_outlook *in, const adcgs_ster
                       !turn_round(right, down) || !(at[0] >= 0 && at[1] >= 0 && at[0] < pose->w && at[1] < pose->h)))
             continue;
         const field f = field_about(in->view, at, reach);
-        adcgs_sight *const sight = &s->sight[s->n];
+        adcgs_correspondence *const match = &s->match[s->n];
         if (f.x1 - f.x0 < 3 || f.y1 - f.y0 < 3 ||
-            !(adcgs_window_take(own, other->view, own_at, right, down) > ADCGS_WINDOW_TEXTURE) ||
-            !look(in, own, &f, alike, sight->at))
+            !(adcgs_window_sample(own, other->view, own_at, right, down) > ADCGS_WINDOW_TEXTURE) ||
+            !look(in, own, &f, alike, match->at))
             continue;
-        adcgs_stereo_rig_lift(other->view, m->px, m->py, m->depth, sight->x);
-        sight->from = from;
+        adcgs_stereo_rig_lift(other->view, m->px, m->py, m->depth, match->x);
+        match->from = from;
         s->n++;
     }
 }

@@ -19,13 +19,13 @@ enum {
 #define STEP_LEAST 0.01    /* pixels: step length at which iteration stops */
 #define STEP_MOST 1.5      /* pixels: maximum step of the body's points, approximately */
 
-int adcgs_sample_take(const adcgs_stereo_camera *c, int moment, const double at[2], adcgs_sample *s)
+int adcgs_sample_image(const adcgs_stereo_camera *c, int frame, const double at[2], adcgs_sample *s)
 {
     const double u = at[0] - 0.5, v = at[1] - 0.5;
     const int x = (int)floor(u), y = (int)floor(v), w = c->view.w;
     if (x < 0 || y < 0 || x + 1 >= w || y + 1 >= c->view.h)
         return 0;
-    const uint8_t *p = c->shown[moment] + 4 * ((size_t)y * (size_t)w + (size_t)x), *q = p + 4 * (size_t)w;
+    const uint8_t *p = c->frame[frame] + 4 * ((size_t)y * (size_t)w + (size_t)x), *q = p + 4 * (size_t)w;
     const double a = u - x, b = v - y;
     if (!p[3] || !p[7] || !q[3] || !q[7])
         return 0;
@@ -97,15 +97,15 @@ static void add_slope(pass *p, const adcgs_sample *s, const double row[2][6], co
 }
 
 /** Samples the view at a point. at[2]: its pixel position. Returns 0 if the view gives no sample. */
-static int look(const adcgs_moment_views *views, int k, const double x[3], const double normal[3], double at[2], double *depth,
+static int look(const adcgs_frame_views *views, int k, const double x[3], const double normal[3], double at[2], double *depth,
                 adcgs_sample *s)
 {
     const adcgs_stereo_view *v = &views->camera[k]->view;
     return adcgs_faces(v, x, normal) && adcgs_stereo_rig_project(v, x, at, depth) &&
-           adcgs_sample_take(views->camera[k], views->moment, at, s);
+           adcgs_sample_image(views->camera[k], views->frame, at, s);
 }
 
-static void run(pass *p, const adcgs_body_model *m, const adcgs_moment_views *views, uint32_t stride, const adcgs_placing *place)
+static void run(pass *p, const adcgs_body_model *m, const adcgs_frame_views *views, uint32_t stride, const adcgs_placement *place)
 {
     for (uint32_t i = 0; i < m->n; i += stride) {
         double x[3], normal[3], at[2], depth, row[2][6], off[3];
@@ -141,7 +141,7 @@ static double find_centre(const adcgs_body_model *m, const adcgs_rigid *at, doub
 }
 
 /** One step. Returns 0 if there are too few samples or the step is negligible. */
-static int step(pass *p, const adcgs_body_model *m, double radius, adcgs_placing *place)
+static int step(pass *p, const adcgs_body_model *m, double radius, adcgs_placement *place)
 {
     if (p->n < LEAST)
         return 0;
@@ -163,7 +163,7 @@ static int step(pass *p, const adcgs_body_model *m, double radius, adcgs_placing
     return moves > STEP_LEAST * STEP_LEAST * m->pixel * m->pixel;
 }
 
-void adcgs_direct_judge(const adcgs_body_model *m, const adcgs_moment_views *views, uint32_t stride, adcgs_placing *place)
+void adcgs_direct_judge(const adcgs_body_model *m, const adcgs_frame_views *views, uint32_t stride, adcgs_placement *place)
 {
     for (int round = 0; round < 3; round++) { /* fits the gains, then measures the residual */
         pass p = { .off = OFF_LAST };
@@ -174,7 +174,7 @@ void adcgs_direct_judge(const adcgs_body_model *m, const adcgs_moment_views *vie
     }
 }
 
-void adcgs_direct_refine(const adcgs_body_model *m, const adcgs_moment_views *views, uint32_t stride, adcgs_placing *place)
+void adcgs_direct_refine(const adcgs_body_model *m, const adcgs_frame_views *views, uint32_t stride, adcgs_placement *place)
 {
     for (int round = 0; round < ROUNDS; round++) {
         const double along = round / (ROUNDS - 1.0);
@@ -189,7 +189,7 @@ void adcgs_direct_refine(const adcgs_body_model *m, const adcgs_moment_views *vi
     }
 }
 
-double adcgs_direct_point(const adcgs_body_model *m, uint32_t i, const adcgs_moment_views *views, const adcgs_placing *place)
+double adcgs_direct_point(const adcgs_body_model *m, uint32_t i, const adcgs_frame_views *views, const adcgs_placement *place)
 {
     double x[3], normal[3], best[ADCGS_STEREO_CAMERAS], sum = 0;
     int n = 0;
@@ -248,7 +248,7 @@ static double add_line(line side[3], const float rgb[3], const adcgs_sample *s)
     return fits;
 }
 
-double adcgs_direct_any_light(const adcgs_body_model *m, const adcgs_moment_views *views, uint32_t stride, const adcgs_rigid *at)
+double adcgs_direct_any_light(const adcgs_body_model *m, const adcgs_frame_views *views, uint32_t stride, const adcgs_rigid *at)
 {
     line lines[ADCGS_BODY_SIDES][3];
     double light = 0;

@@ -15,22 +15,23 @@ typedef struct adcgs_sample {
 } adcgs_sample;
 
 /** Returns 0 if the colour is unknown. */
-int adcgs_sample_take(const adcgs_stereo_camera *camera, int moment, const double at[2], adcgs_sample *sample);
+int adcgs_sample_image(const adcgs_stereo_camera *camera, int frame, const double at[2], adcgs_sample *sample);
 
 /** Refines place->at and place->gain over every stride'th point. */
-void adcgs_direct_refine(const adcgs_body_model *model, const adcgs_moment_views *views, uint32_t stride, adcgs_placing *place);
+void adcgs_direct_refine(const adcgs_body_model *model, const adcgs_frame_views *views, uint32_t stride, adcgs_placement *place);
 
 /** Sets place->gain and place->light at the current pose. */
-void adcgs_direct_judge(const adcgs_body_model *model, const adcgs_moment_views *views, uint32_t stride, adcgs_placing *place);
+void adcgs_direct_judge(const adcgs_body_model *model, const adcgs_frame_views *views, uint32_t stride, adcgs_placement *place);
 
 /**
  * Agreement of the images at a pose, if each side may also change its colours by a gain and an offset per channel. Serves to
  * detect bodies that change only their appearance.
  */
-double adcgs_direct_any_light(const adcgs_body_model *model, const adcgs_moment_views *views, uint32_t stride,
+double adcgs_direct_any_light(const adcgs_body_model *model, const adcgs_frame_views *views, uint32_t stride,
                               const adcgs_rigid *at);
 
 /** Agreement of point i with the better half of the views that it faces, 0..1. */
-double adcgs_direct_point(const adcgs_body_model *model, uint32_t i, const adcgs_moment_views *views, const adcgs_placing *place);
+double adcgs_direct_point(const adcgs_body_model *model, uint32_t i, const adcgs_frame_views *views,
+                          const adcgs_placement *place);
 
 #endif

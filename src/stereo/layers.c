@@ -44,7 +44,7 @@ static void find_reach(adcgs_layers *l)
 }
 
 /** Sets the colour from the softened image closest to the point's own colour: its source view, or a similar one. */
-static void recolour(adcgs_stereo_point *p, const float normal[3], const adcgs_moment_views *views)
+static void recolour(adcgs_stereo_point *p, const float normal[3], const adcgs_frame_views *views)
 {
     const double n[3] = { (double)normal[0], (double)normal[1], (double)normal[2] };
     float best[3], least = 4;
@@ -54,7 +54,7 @@ static void recolour(adcgs_stereo_point *p, const float normal[3], const adcgs_m
         float off = 0;
         if (!adcgs_faces(&views->camera[k]->view, p->x, n) ||
             !adcgs_stereo_rig_project(&views->camera[k]->view, p->x, at, &depth) ||
-            !adcgs_sample_take(views->camera[k], views->moment, at, &s))
+            !adcgs_sample_image(views->camera[k], views->frame, at, &s))
             continue;
         for (int a = 0; a < 3; a++)
             off += fabsf((float)s.rgb[a] - p->rgb[a]);
@@ -71,7 +71,7 @@ static void recolour(adcgs_stereo_point *p, const float normal[3], const adcgs_m
 adcgs_status adcgs_layers_init(adcgs_layers *l, const adcgs_stereo *stereo, const adcgs_stereo_rig *rig, adcgs_error *error)
 {
     uint32_t end = 0;
-    *l = (adcgs_layers){ .rig = rig, .n = rig->n_moments, .p = adcgs_alloc(NULL, stereo->n_moving, sizeof *l->p, error) };
+    *l = (adcgs_layers){ .rig = rig, .n = rig->n_frames, .p = adcgs_alloc(NULL, stereo->n_moving, sizeof *l->p, error) };
     if (!l->p)
         return adcgs_alloc_status(error);
     memcpy(l->p, stereo->moving, stereo->n_moving * sizeof *l->p);
@@ -81,10 +81,10 @@ adcgs_status adcgs_layers_init(adcgs_layers *l, const adcgs_stereo *stereo, cons
         return adcgs_alloc_status(error);
     for (int m = 0; m < l->n; m++) {
         const uint32_t begin = end;
-        while (end < stereo->n_moving && l->p[end].t <= rig->moment[m])
+        while (end < stereo->n_moving && l->p[end].t <= rig->frame_time[m])
             end++;
         l->begin[m + 1] = end;
-        adcgs_moment_views_init(&l->views[m], rig, m);
+        adcgs_frame_views_init(&l->views[m], rig, m);
         ADCGS_TRY(adcgs_cloud_init(&l->all[m], l->p + begin, end - begin, 1, CELL * l->pixel, error));
         ADCGS_TRY(adcgs_cloud_init(&l->few[m], l->p + begin, end - begin, (end - begin) / FEW + 1, CELL_FEW * l->pixel, error));
     }

@@ -19,8 +19,8 @@ static float grey_at(const adcgs_stereo_view *v, double x, double y)
             b * ((1 - a) * (q[0] + q[1] + q[2]) + a * (q[4] + q[5] + q[6]))) * (1.0f / 3);
 }
 
-float adcgs_window_take(float out[ADCGS_WINDOW], const adcgs_stereo_view *v, const double at[2], const double right[2],
-                        const double down[2])
+float adcgs_window_sample(float out[ADCGS_WINDOW], const adcgs_stereo_view *v, const double at[2], const double right[2],
+                          const double down[2])
 {
     float sum = 0, square = 0;
     for (int y = 0; y < ADCGS_WINDOW_SIDE; y++)

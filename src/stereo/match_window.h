@@ -12,11 +12,11 @@ enum { ADCGS_WINDOW_SIDE = 7, ADCGS_WINDOW = ADCGS_WINDOW_SIDE * ADCGS_WINDOW_SI
  * Samples a window around a position and normalises it to mean 0 and norm 1. right, down: steps between its pixels. \return its
  * variance, NaN if it is not fully known.
  */
-float adcgs_window_take(float out[ADCGS_WINDOW], const adcgs_stereo_view *view, const double at[2], const double right[2],
-                        const double down[2]);
+float adcgs_window_sample(float out[ADCGS_WINDOW], const adcgs_stereo_view *view, const double at[2], const double right[2],
+                          const double down[2]);
 
 /** Correlation of two windows. */
-static inline float adcgs_window_alike(const float a[ADCGS_WINDOW], const float b[ADCGS_WINDOW])
+static inline float adcgs_window_correlation(const float a[ADCGS_WINDOW], const float b[ADCGS_WINDOW])
 {
     float sum = 0;
     for (int i = 0; i < ADCGS_WINDOW; i++)

@@ -18,19 +18,19 @@ enum {
  * Counts sightings and matches of the body's points in a frame. mark: [n] the frame's points that belong to the body; may be
  * NULL.
  */
-static void count(adcgs_track *t, const adcgs_layers *l, int moment, uint8_t *mark)
+static void count(adcgs_track *t, const adcgs_layers *l, int frame, uint8_t *mark)
 {
     for (uint32_t i = 0; i < t->model.n; i++) {
         double x[3], normal[3];
         uint32_t j = 0;
-        if (!adcgs_body_point_at(&t->model, i, &t->place[moment].at, &l->views[moment], x, normal))
+        if (!adcgs_body_point_at(&t->model, i, &t->place[frame].at, &l->views[frame], x, normal))
             continue;
         t->model.more[i].seen++;
-        const int found = adcgs_body_match(&t->model, i, x, &l->all[moment], &t->place[moment], &j);
+        const int found = adcgs_body_match(&t->model, i, x, &l->all[frame], &t->place[frame], &j);
         if (found && mark)
             mark[j] = 1;
         t->model.more[i].agreed = (uint16_t)(t->model.more[i].agreed +
-            (found || adcgs_direct_point(&t->model, i, &l->views[moment], &t->place[moment]) > FITS));
+            (found || adcgs_direct_point(&t->model, i, &l->views[frame], &t->place[frame]) > FITS));
     }
 }
 
@@ -61,11 +61,11 @@ static void spread(const adcgs_cloud *c, double reach, uint8_t *mark)
 }
 
 /** Adds a frame's point to the body's rest pose. */
-static adcgs_status add_point(adcgs_track *t, const adcgs_layers *l, int moment, uint32_t i, const adcgs_rigid *back,
+static adcgs_status add_point(adcgs_track *t, const adcgs_layers *l, int frame, uint32_t i, const adcgs_rigid *back,
                               const adcgs_cloud *own, adcgs_error *error)
 {
-    adcgs_stereo_point p = l->all[moment].p[i];
-    const float *n = l->normal[l->begin[moment] + i];
+    adcgs_stereo_point p = l->all[frame].p[i];
+    const float *n = l->normal[l->begin[frame] + i];
     double x[3], turned[3];
     uint32_t near;
     adcgs_rigid_apply(back, p.x, x);
@@ -75,27 +75,27 @@ static adcgs_status add_point(adcgs_track *t, const adcgs_layers *l, int moment,
     adcgs_rigid_turn(back, (const double[]){ (double)n[0], (double)n[1], (double)n[2] }, turned);
     ADCGS_TRY(adcgs_body_add(&t->model, &p, (const float[]){ (float)turned[0], (float)turned[1], (float)turned[2] }, error));
     for (int a = 0; a < 3; a++)
-        t->model.p[t->model.n - 1].rgb[a] /= t->place[moment].gain[t->model.more[t->model.n - 1].side][a];
+        t->model.p[t->model.n - 1].rgb[a] /= t->place[frame].gain[t->model.more[t->model.n - 1].side][a];
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_members_grow(adcgs_track *t, const adcgs_layers *l, int moment, adcgs_error *error)
+adcgs_status adcgs_members_grow(adcgs_track *t, const adcgs_layers *l, int frame, adcgs_error *error)
 {
-    const adcgs_cloud *c = &l->all[moment];
+    const adcgs_cloud *c = &l->all[frame];
     adcgs_cloud own = { .p = NULL };
     adcgs_rigid back;
     uint8_t *mark = adcgs_alloc(NULL, c->n, 1, error);
     adcgs_status status = mark ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
-        count(t, l, moment, mark);
+        count(t, l, frame, mark);
         drop(&t->model, SURE);
         spread(c, l->reach, mark);
         status = adcgs_cloud_init(&own, t->model.p, t->model.n, 1, 2 * t->model.pixel, error);
     }
-    adcgs_rigid_inverse(&t->place[moment].at, &back);
+    adcgs_rigid_inverse(&t->place[frame].at, &back);
     for (uint32_t i = 0; i < c->n && status == ADCGS_OK; i++)
         if (mark[i]) {
-            status = add_point(t, l, moment, i, &back, &own, error);
+            status = add_point(t, l, frame, i, &back, &own, error);
             own.p = t->model.p; /* the array may have been reallocated */
         }
     adcgs_cloud_clear(&own);

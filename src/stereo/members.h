@@ -8,7 +8,7 @@
 #include "stereo/track.h"
 
 /** Drops points that have not followed the motion so far, then adds points connected to the body in a frame with a known pose. */
-adcgs_status adcgs_members_grow(adcgs_track *track, const adcgs_layers *layers, int moment, adcgs_error *error);
+adcgs_status adcgs_members_grow(adcgs_track *track, const adcgs_layers *layers, int frame, adcgs_error *error);
 
 /** Drops points that seldom match. */
 void adcgs_members_clean(adcgs_track *track, const adcgs_layers *layers);

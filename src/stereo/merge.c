@@ -19,7 +19,7 @@ enum {
 /** A frame's point, transformed to the rest pose. */
 typedef struct entry {
     uint64_t cell;
-    int moment;
+    int frame;
     double x[3];
     float rgb[3], normal[3], size;
 } entry;
@@ -29,8 +29,8 @@ static int by_cell(const void *a, const void *b)
     const entry *p = a, *q = b;
     if (p->cell != q->cell)
         return p->cell < q->cell ? -1 : 1;
-    if (p->moment != q->moment)
-        return p->moment - q->moment;
+    if (p->frame != q->frame)
+        return p->frame - q->frame;
     for (int k = 0; k < 3; k++)
         if (p->x[k] < q->x[k] || p->x[k] > q->x[k])
             return p->x[k] < q->x[k] ? -1 : 1;
@@ -38,23 +38,23 @@ static int by_cell(const void *a, const void *b)
 }
 
 /** Transforms a frame's point to the rest pose. Returns 1 if the body has a similar point there. */
-static int set_entry(entry *e, const adcgs_track *t, const adcgs_layers *l, const adcgs_cloud *own, int moment, uint32_t i,
+static int set_entry(entry *e, const adcgs_track *t, const adcgs_layers *l, const adcgs_cloud *own, int frame, uint32_t i,
                      const adcgs_rigid *back)
 {
-    const adcgs_stereo_point *p = &l->all[moment].p[i];
-    const float *n = l->normal[l->begin[moment] + i];
+    const adcgs_stereo_point *p = &l->all[frame].p[i];
+    const float *n = l->normal[l->begin[frame] + i];
     double normal[3];
     uint32_t near;
     if (p->body)
         return 0;
     adcgs_rigid_apply(back, p->x, e->x);
     adcgs_rigid_turn(back, (const double[]){ (double)n[0], (double)n[1], (double)n[2] }, normal);
-    e->moment = moment;
+    e->frame = frame;
     e->size = p->size;
     e->cell = 0;
     for (int a = 0; a < 3; a++)
         e->normal[a] = (float)normal[a];
-    const float *gain = t->place[moment].gain[adcgs_body_side(e->normal)];
+    const float *gain = t->place[frame].gain[adcgs_body_side(e->normal)];
     for (int a = 0; a < 3; a++) {
         e->rgb[a] = p->rgb[a] / gain[a];
         e->cell = adcgs_mix64(e->cell ^ (uint64_t)(int64_t)floor(e->x[a] / (EDGE * t->model.pixel)));
@@ -78,7 +78,7 @@ static int mean_of(const entry *e, uint32_t n, adcgs_stereo_point *p, float norm
     const float length = sqrtf(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     for (int a = 0; a < 3 && length > 0; a++)
         normal[a] /= length;
-    return e[0].moment != e[n - 1].moment;
+    return e[0].frame != e[n - 1].frame;
 }
 
 static adcgs_status gather(const entry *e, uint32_t n, adcgs_body_model *to, adcgs_error *error)

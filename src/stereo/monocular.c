@@ -66,7 +66,7 @@ static double distance2(const double a[3], const double b[3])
 }
 
 /** Median colour of a point in the other images; 0 if too few of them see it. */
-static int usual_at(const showing *s, int own, const double x[3], float rgb[3])
+static int background_at(const showing *s, int own, const double x[3], float rgb[3])
 {
     double values[3][ADCGS_STEREO_CAMERAS];
     int n = 0;
@@ -79,10 +79,10 @@ static int usual_at(const showing *s, int own, const double x[3], float rgb[3])
         const int p = (int)at[1] * c->view.w + (int)at[0];
         if (d->quality && d->quality[p] != ADCGS_DEPTH_NONE && depth * (double)d->inverse[p] > HIDDEN)
             continue;
-        if (!c->shown[i][4 * p + 3])
+        if (!c->frame[i][4 * p + 3])
             continue;
         for (int k = 0; k < 3; k++)
-            values[k][n] = (double)(c->shown[i][4 * p + k] * (1.0f / 255));
+            values[k][n] = (double)(c->frame[i][4 * p + k] * (1.0f / 255));
         n++;
     }
     for (int k = 0; k < 3 && n >= SEEN_LEAST; k++) {
@@ -105,12 +105,13 @@ static void show_usual(void *arg, int i, int thread)
             if (inverse[p] <= 0)
                 continue;
             adcgs_stereo_rig_lift(&c->view, x, y, 1 / (double)inverse[p], place);
-            usual_at(s, i, place, c->usual + 4 * (size_t)p);
+            background_at(s, i, place, c->background + 4 * (size_t)p);
         }
     adcgs_free(NULL, inverse);
 }
 
-adcgs_status adcgs_film_set_usual(adcgs_stereo_rig *rig, const adcgs_depths *depths, adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_monocular_set_background(adcgs_stereo_rig *rig, const adcgs_depths *depths, adcgs_pool *pool,
+                                            adcgs_error *error)
 {
     showing *s = adcgs_alloc(NULL, 1, sizeof *s, error);
     if (!s)
@@ -126,7 +127,7 @@ adcgs_status adcgs_film_set_usual(adcgs_stereo_rig *rig, const adcgs_depths *dep
 /* ---- Moving parts ---- */
 
 /** Difference of a pixel from the range of background colours in its 3x3 window, in the channel that differs most. */
-static float off_usual(const adcgs_stereo_camera *c, const uint8_t *shown, int px, int py)
+static float background_difference(const adcgs_stereo_camera *c, const uint8_t *shown, int px, int py)
 {
     float most = 0;
     for (int k = 0; k < 3; k++) {
@@ -134,9 +135,9 @@ static float off_usual(const adcgs_stereo_camera *c, const uint8_t *shown, int p
         float low = 1, high = 0;
         for (int y = ADCGS_MAX(py - 1, 0); y <= ADCGS_MIN(py + 1, c->view.h - 1); y++)
             for (int x = ADCGS_MAX(px - 1, 0); x <= ADCGS_MIN(px + 1, c->view.w - 1); x++) {
-                const float usual = c->usual[4 * (y * c->view.w + x) + k];
-                low = fminf(low, usual);
-                high = fmaxf(high, usual);
+                const float background = c->background[4 * (y * c->view.w + x) + k];
+                low = fminf(low, background);
+                high = fmaxf(high, background);
             }
         most = fmaxf(most, fmaxf(low - value, value - high));
     }
@@ -149,7 +150,7 @@ static void mark(const adcgs_stereo_camera *c, const uint8_t *shown, uint8_t *of
     const int w = c->view.w, h = c->view.h;
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++)
-            off[y * w + x] = shown[4 * (y * w + x) + 3] && off_usual(c, shown, x, y) > MOVED;
+            off[y * w + x] = shown[4 * (y * w + x) + 3] && background_difference(c, shown, x, y) > MOVED;
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
             int sum = 0;
@@ -230,8 +231,8 @@ static adcgs_status add_parts(adcgs_stereo_list *list, const adcgs_stereo_view *
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_film_find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_depths *depths, int m,
-                                    adcgs_error *error)
+adcgs_status adcgs_monocular_find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_depths *depths, int m,
+                                         adcgs_error *error)
 {
     const adcgs_stereo_camera *camera = &rig->camera[m];
     const int w = camera->view.w, h = camera->view.h;
@@ -243,10 +244,10 @@ adcgs_status adcgs_film_find_moving(adcgs_stereo_list *list, const adcgs_stereo_
     int *stack = adcgs_alloc(NULL, plane, sizeof *stack, error);
     adcgs_status status = inverse && pixels && off && part && stack ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
-        adcgs_stereo_rig_take(camera, m, pixels);
+        adcgs_stereo_rig_get_frame(camera, m, pixels);
         view.pixels = pixels;
-        mark(camera, camera->shown[m], off, part);
-        status = add_parts(list, &view, part, number_parts(part, w, h, stack), inverse, rig->moment[m], error);
+        mark(camera, camera->frame[m], off, part);
+        status = add_parts(list, &view, part, number_parts(part, w, h, stack), inverse, rig->frame_time[m], error);
     }
     adcgs_free(NULL, inverse);
     adcgs_free(NULL, pixels);
@@ -262,7 +263,7 @@ adcgs_status adcgs_film_find_moving(adcgs_stereo_list *list, const adcgs_stereo_
 static void beside(const adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig, int m, uint32_t *first,
                    uint32_t *end)
 {
-    const float from = rig->moment[ADCGS_MAX(m - 1, 0)], to = rig->moment[ADCGS_MIN(m + 1, rig->n_moments - 1)];
+    const float from = rig->frame_time[ADCGS_MAX(m - 1, 0)], to = rig->frame_time[ADCGS_MIN(m + 1, rig->n_frames - 1)];
     while (*first < n && points[*first].t < from)
         ++*first;
     for (*end = *first; *end < n && points[*end].t <= to; ++*end)
@@ -289,15 +290,16 @@ static void middle_about(const adcgs_stereo_point *points, uint32_t n, const dou
     }
 }
 
-adcgs_status adcgs_film_even_velocities(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig, adcgs_error *error)
+adcgs_status adcgs_monocular_smooth_velocities(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig,
+                                               adcgs_error *error)
 {
     float(*even)[3] = adcgs_alloc(NULL, (size_t)n + 1, sizeof *even, error);
     uint32_t first = 0, end = 0, i = 0;
     if (!even)
         return adcgs_alloc_status(error);
-    for (int m = 0; m < rig->n_moments; m++) {
+    for (int m = 0; m < rig->n_frames; m++) {
         beside(points, n, rig, m, &first, &end);
-        for (; i < n && points[i].t <= rig->moment[m]; i++)
+        for (; i < n && points[i].t <= rig->frame_time[m]; i++)
             middle_about(points + first, end - first, points[i].x, even[i]);
     }
     for (i = 0; i < n; i++)

@@ -11,16 +11,18 @@
 #include "stereo/fuse.h"
 
 /** Sets the background of each camera: the colours of the other cameras at the static depths. */
-adcgs_status adcgs_film_set_usual(adcgs_stereo_rig *rig, const adcgs_depths *depths, adcgs_pool *pool, adcgs_error *error);
+adcgs_status adcgs_monocular_set_background(adcgs_stereo_rig *rig, const adcgs_depths *depths, adcgs_pool *pool,
+                                            adcgs_error *error);
 
 /** Adds the moving points of frame m. */
-adcgs_status adcgs_film_find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_depths *depths, int m,
-                                    adcgs_error *error);
+adcgs_status adcgs_monocular_find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_depths *depths, int m,
+                                         adcgs_error *error);
 
 /**
  * Replaces the velocity of each moving point by the median of the velocities nearby, in its frame and the two adjacent ones.
  * Points ascend in t. A single match is off by about one pixel, which adds up over a lifetime.
  */
-adcgs_status adcgs_film_even_velocities(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig, adcgs_error *error);
+adcgs_status adcgs_monocular_smooth_velocities(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig,
+                                               adcgs_error *error);
 
 #endif

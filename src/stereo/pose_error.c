@@ -34,8 +34,8 @@ static void compare_across(const pair *p, const float own[WINDOW], const double 
     for (int o = -REACH; o <= REACH; o++) {
         const double there[2] = { at[0] + o * side[0], at[1] + o * side[1] };
         float other[WINDOW];
-        alike[o + REACH] = adcgs_window_take(other, p->to, there, right, down) > ADCGS_WINDOW_TEXTURE
-                               ? (double)adcgs_window_alike(own, other) : -1;
+        alike[o + REACH] = adcgs_window_sample(other, p->to, there, right, down) > ADCGS_WINDOW_TEXTURE
+                               ? (double)adcgs_window_correlation(own, other) : -1;
     }
 }
 
@@ -79,7 +79,7 @@ static void look_at_pair(void *arg, int i, int thread)
         for (int x = SIDE; x + SIDE < p->from->w && n < MATCHES_MOST; x += CELL) {
             float own[WINDOW];
             const double at[2] = { x + 0.5, y + 0.5 }, right[2] = { 1, 0 }, down[2] = { 0, 1 };
-            if (!(adcgs_window_take(own, p->from, at, right, down) > ADCGS_WINDOW_TEXTURE))
+            if (!(adcgs_window_sample(own, p->from, at, right, down) > ADCGS_WINDOW_TEXTURE))
                 continue;
             const double off = off_line(p, own, x, y);
             if (!isnan(off))
@@ -98,9 +98,9 @@ static int next_neighbour(const adcgs_stereo_rig *rig, int own, int taken)
     int best = -1;
     for (int i = 0; i < rig->n_cameras; i++) {
         const adcgs_stereo_view *const b = &rig->camera[i].view;
-        const double d = adcgs_stereo_apart(a, b);
+        const double d = adcgs_stereo_baseline(a, b);
         if (i != own && i != taken && b->pixels && d >= APART && adcgs_stereo_axes_dot(a, b) >= AXES_ALIKE &&
-            (best < 0 || d < adcgs_stereo_apart(a, &rig->camera[best].view)))
+            (best < 0 || d < adcgs_stereo_baseline(a, &rig->camera[best].view)))
             best = i;
     }
     return best;
@@ -119,7 +119,8 @@ static int find_pairs(const adcgs_stereo_rig *rig, pair *pairs)
     return n;
 }
 
-adcgs_status adcgs_stereo_poses_off(const adcgs_stereo_rig *rig, adcgs_stereo_off *out, adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_stereo_measure_pose_error(const adcgs_stereo_rig *rig, adcgs_stereo_pose_error *out, adcgs_pool *pool,
+                                             adcgs_error *error)
 {
     pair *const pairs = adcgs_alloc(NULL, NEIGHBOURS * ADCGS_STEREO_CAMERAS, sizeof *pairs, error);
     double offs[NEIGHBOURS * ADCGS_STEREO_CAMERAS];

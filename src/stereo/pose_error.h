@@ -6,6 +6,7 @@
 #include "stereo/rig.h"
 
 /** Compares each camera with the two nearest cameras of similar viewing direction. Leaves out->pixels unchanged. */
-adcgs_status adcgs_stereo_poses_off(const adcgs_stereo_rig *rig, adcgs_stereo_off *out, adcgs_pool *pool, adcgs_error *error);
+adcgs_status adcgs_stereo_measure_pose_error(const adcgs_stereo_rig *rig, adcgs_stereo_pose_error *out, adcgs_pool *pool,
+                                             adcgs_error *error);
 
 #endif

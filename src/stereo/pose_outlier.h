@@ -9,8 +9,8 @@
 #include "stereo/rig.h"
 #include "stereo/smooth.h"
 
-/** depths: static depths of the rig's cameras that have a background, in order. Sets out->odd and out->n_odd. */
-adcgs_status adcgs_stereo_find_odd(adcgs_stereo *out, const adcgs_stereo_rig *rig, const adcgs_depths *depths, adcgs_pool *pool,
-                                   adcgs_error *error);
+/** depths: static depths of the rig's cameras that have a background, in order. Sets out->outlier and out->n_outliers. */
+adcgs_status adcgs_stereo_find_pose_outliers(adcgs_stereo *out, const adcgs_stereo_rig *rig, const adcgs_depths *depths,
+                                             adcgs_pool *pool, adcgs_error *error);
 
 #endif

@@ -60,11 +60,11 @@ void adcgs_body_clear(adcgs_body_model *m)
     *m = (adcgs_body_model){ .n = 0 };
 }
 
-void adcgs_moment_views_init(adcgs_moment_views *views, const adcgs_stereo_rig *rig, int moment)
+void adcgs_frame_views_init(adcgs_frame_views *views, const adcgs_stereo_rig *rig, int frame)
 {
-    *views = (adcgs_moment_views){ .moment = moment };
+    *views = (adcgs_frame_views){ .frame = frame };
     for (int c = 0; c < rig->n_cameras; c++)
-        if (rig->camera[c].usual && rig->camera[c].shown[moment])
+        if (rig->camera[c].background && rig->camera[c].frame[frame])
             views->camera[views->n++] = &rig->camera[c];
 }
 
@@ -75,7 +75,7 @@ int adcgs_faces(const adcgs_stereo_view *view, const double x[3], const double n
     return along > 0 ? along * along > FACING * FACING * adcgs_v3_dot(to, to) : adcgs_v3_dot(normal, normal) < 0.5;
 }
 
-int adcgs_body_point_at(const adcgs_body_model *m, uint32_t i, const adcgs_rigid *at, const adcgs_moment_views *views,
+int adcgs_body_point_at(const adcgs_body_model *m, uint32_t i, const adcgs_rigid *at, const adcgs_frame_views *views,
                         double x[3], double normal[3])
 {
     const float *n = m->more[i].normal;
@@ -102,14 +102,14 @@ void adcgs_gains_set(float gain[ADCGS_BODY_SIDES][3], const adcgs_gain_sums *sum
     }
 }
 
-static void tinted(const adcgs_body_model *m, uint32_t i, const adcgs_placing *place, float rgb[3])
+static void tinted(const adcgs_body_model *m, uint32_t i, const adcgs_placement *place, float rgb[3])
 {
     for (int a = 0; a < 3; a++)
         rgb[a] = m->p[i].rgb[a] * place->gain[m->more[i].side][a];
 }
 
-void adcgs_body_lay(const adcgs_body_model *m, const adcgs_cloud *cloud, const adcgs_moment_views *views, const adcgs_lay *how,
-                    adcgs_placing *place)
+void adcgs_body_register(const adcgs_body_model *m, const adcgs_cloud *cloud, const adcgs_frame_views *views,
+                         const adcgs_registration_stage *how, adcgs_placement *place)
 {
     const double reach = how->reach * m->pixel, sharp = how->sharp * m->pixel;
     for (int round = 0; round < how->rounds; round++) {
@@ -147,15 +147,15 @@ int adcgs_body_near(const adcgs_body_model *m, const adcgs_cloud *own, const dou
 }
 
 int adcgs_body_match(const adcgs_body_model *m, uint32_t i, const double x[3], const adcgs_cloud *cloud,
-                     const adcgs_placing *place, uint32_t *found)
+                     const adcgs_placement *place, uint32_t *found)
 {
     float rgb[3];
     tinted(m, i, place, rgb);
     return adcgs_body_near(m, cloud, x, rgb, found);
 }
 
-void adcgs_body_judge(const adcgs_body_model *m, const adcgs_cloud *cloud, const adcgs_moment_views *views, uint32_t stride,
-                      adcgs_placing *place)
+void adcgs_body_judge(const adcgs_body_model *m, const adcgs_cloud *cloud, const adcgs_frame_views *views, uint32_t stride,
+                      adcgs_placement *place)
 {
     double seen = 0, agreed = 0;
     for (uint32_t i = 0; i < m->n; i += stride) {

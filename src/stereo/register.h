@@ -29,10 +29,10 @@ typedef struct adcgs_body_model {
 } adcgs_body_model;
 
 /** The cameras with an image of a frame. */
-typedef struct adcgs_moment_views {
-    int n, moment;
+typedef struct adcgs_frame_views {
+    int n, frame;
     const adcgs_stereo_camera *camera[ADCGS_STEREO_CAMERAS];
-} adcgs_moment_views;
+} adcgs_frame_views;
 
 /** Sums of colour products per side and channel. Zero-initialise before use. */
 typedef struct adcgs_gain_sums {
@@ -41,18 +41,18 @@ typedef struct adcgs_gain_sums {
 } adcgs_gain_sums;
 
 /** Pose of a body in a frame, and the brightness of its sides relative to the rest pose. */
-typedef struct adcgs_placing {
+typedef struct adcgs_placement {
     adcgs_rigid at;
     float gain[ADCGS_BODY_SIDES][3];
     double share, light; /**< share of the points that match; agreement of the images, 0..1 */
-} adcgs_placing;
+} adcgs_placement;
 
 /** Parameters of a registration. */
-typedef struct adcgs_lay {
+typedef struct adcgs_registration_stage {
     double reach, sharp; /**< pixels: maximum match distance; distance at which the fit is one half */
     int rounds;
     uint32_t stride;     /**< of the body's points */
-} adcgs_lay;
+} adcgs_registration_stage;
 
 /** Side of a normal in the rest pose. */
 int adcgs_body_side(const float normal[3]);
@@ -60,31 +60,31 @@ int adcgs_body_side(const float normal[3]);
 adcgs_status adcgs_body_add(adcgs_body_model *model, const adcgs_stereo_point *point, const float normal[3], adcgs_error *error);
 void adcgs_body_clear(adcgs_body_model *model);
 
-void adcgs_moment_views_init(adcgs_moment_views *views, const adcgs_stereo_rig *rig, int moment);
+void adcgs_frame_views_init(adcgs_frame_views *views, const adcgs_stereo_rig *rig, int frame);
 
 /** True if a view sees the front of a surface at x with this normal. A normal of 0 faces every view. */
 int adcgs_faces(const adcgs_stereo_view *view, const double x[3], const double normal[3]);
 
 /** Position and normal of a body's point in a frame. \return the number of views that it faces. */
-int adcgs_body_point_at(const adcgs_body_model *model, uint32_t i, const adcgs_rigid *at, const adcgs_moment_views *views,
+int adcgs_body_point_at(const adcgs_body_model *model, uint32_t i, const adcgs_rigid *at, const adcgs_frame_views *views,
                         double x[3], double normal[3]);
 
 /** Gains from sums. Sides with little data get the gain of the others. */
 void adcgs_gains_set(float gain[ADCGS_BODY_SIDES][3], const adcgs_gain_sums *sums);
 
-void adcgs_body_lay(const adcgs_body_model *model, const adcgs_cloud *cloud, const adcgs_moment_views *views,
-                    const adcgs_lay *how, adcgs_placing *place);
+void adcgs_body_register(const adcgs_body_model *model, const adcgs_cloud *cloud, const adcgs_frame_views *views,
+                         const adcgs_registration_stage *how, adcgs_placement *place);
 
 /** Finds the frame's point at the position of the body's point i and with a similar colour. Returns 0 if there is none. */
 int adcgs_body_match(const adcgs_body_model *model, uint32_t i, const double x[3], const adcgs_cloud *cloud,
-                     const adcgs_placing *place, uint32_t *found);
+                     const adcgs_placement *place, uint32_t *found);
 
 /** True if a position in the rest pose, with this colour, matches one of the body's points, which are in the cloud `own`. */
 int adcgs_body_near(const adcgs_body_model *model, const adcgs_cloud *own, const double x[3], const float rgb[3],
                     uint32_t *found);
 
 /** Sets place->share. */
-void adcgs_body_judge(const adcgs_body_model *model, const adcgs_cloud *cloud, const adcgs_moment_views *views, uint32_t stride,
-                      adcgs_placing *place);
+void adcgs_body_judge(const adcgs_body_model *model, const adcgs_cloud *cloud, const adcgs_frame_views *views, uint32_t stride,
+                      adcgs_placement *place);
 
 #endif

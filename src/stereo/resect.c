@@ -23,7 +23,7 @@ static void to_camera(const adcgs_stereo_view *v, const double x[3], double p[3]
 }
 
 /** Reprojection error of a correspondence. Returns 0 if the point is behind the camera. */
-static int difference(const adcgs_stereo_view *v, const adcgs_sight *s, double p[3], double off[2])
+static int difference(const adcgs_stereo_view *v, const adcgs_correspondence *s, double p[3], double off[2])
 {
     to_camera(v, s->x, p);
     if (!(p[2] > 1e-6))
@@ -33,17 +33,17 @@ static int difference(const adcgs_stereo_view *v, const adcgs_sight *s, double p
     return 1;
 }
 
-double adcgs_sight_off(const adcgs_stereo_view *view, const adcgs_sight *sight)
+double adcgs_reprojection_error(const adcgs_stereo_view *view, const adcgs_correspondence *match)
 {
     double p[3], off[2];
-    return difference(view, sight, p, off) ? hypot(off[0], off[1]) : (double)INFINITY;
+    return difference(view, match, p, off) ? hypot(off[0], off[1]) : (double)INFINITY;
 }
 
-int adcgs_sights_near(const adcgs_stereo_view *view, const adcgs_sights *s, double off)
+int adcgs_correspondences_count_inliers(const adcgs_stereo_view *view, const adcgs_correspondences *s, double off)
 {
     int n = 0;
     for (int i = 0; i < s->n; i++)
-        n += adcgs_sight_off(view, &s->sight[i]) < off;
+        n += adcgs_reprojection_error(view, &s->match[i]) < off;
     return n;
 }
 
@@ -75,11 +75,11 @@ static void slope_of(const double p[3], int axis, double focal, double row[6])
 }
 
 /** One step; 0 if the system is singular. sharp: error in pixels at which the fit is one half. */
-static int step(adcgs_stereo_view *v, const adcgs_sights *s, double sharp)
+static int step(adcgs_stereo_view *v, const adcgs_correspondences *s, double sharp)
 {
     double a[36] = { 0 }, b[6] = { 0 }, p[3], off[2], row[6];
     for (int i = 0; i < s->n; i++) {
-        if (!difference(v, &s->sight[i], p, off))
+        if (!difference(v, &s->match[i], p, off))
             continue;
         const double fits = 1 / (1 + (off[0] * off[0] + off[1] * off[1]) / (sharp * sharp)), weight = fits * fits;
         for (int axis = 0; axis < 2; axis++) {
@@ -99,19 +99,19 @@ static int step(adcgs_stereo_view *v, const adcgs_sights *s, double sharp)
     return 1;
 }
 
-void adcgs_resect(adcgs_stereo_view *view, const adcgs_sights *sights, double off)
+void adcgs_resect(adcgs_stereo_view *view, const adcgs_correspondences *matches, double off)
 {
     double sharp = off;
-    if (sights->n < SIGHTS_LEAST)
+    if (matches->n < SIGHTS_LEAST)
         return;
-    for (int round = 0; round < ROUNDS && step(view, sights, sharp); round++)
+    for (int round = 0; round < ROUNDS && step(view, matches, sharp); round++)
         sharp = fmax(sharp * NARROWER, SHARP);
 }
 
 /* ---- Without an initial pose ---- */
 
 /** Rotates a camera about its centre so that two correspondences agree. */
-static void turn_to(adcgs_stereo_view *v, const adcgs_sight *two[2])
+static void turn_to(adcgs_stereo_view *v, const adcgs_correspondence *two[2])
 {
     adcgs_rigid_sums sums = { .weight = 0 };
     adcgs_rigid turn;
@@ -137,7 +137,7 @@ static void turn_to(adcgs_stereo_view *v, const adcgs_sight *two[2])
     memcpy(v->rotation, turn.r, sizeof turn.r);
 }
 
-void adcgs_resect_anywhere(adcgs_stereo_view *view, const adcgs_sights *s, const adcgs_stereo_view *views, uint64_t seed)
+void adcgs_resect_anywhere(adcgs_stereo_view *view, const adcgs_correspondences *s, const adcgs_stereo_view *views, uint64_t seed)
 {
     const double roughly = ROUGHLY * view->w;
     adcgs_stereo_view best = *view;
@@ -145,16 +145,16 @@ void adcgs_resect_anywhere(adcgs_stereo_view *view, const adcgs_sights *s, const
     if (s->n < SIGHTS_LEAST)
         return;
     for (uint64_t k = 0; k < TRIES; k++) {
-        const adcgs_sight *two[2];
+        const adcgs_correspondence *two[2];
         adcgs_stereo_view v = *view;
         for (uint64_t i = 0; i < 2; i++)
-            two[i] = &s->sight[adcgs_random64(seed, 3000 + i, k) % (uint64_t)s->n];
+            two[i] = &s->match[adcgs_random64(seed, 3000 + i, k) % (uint64_t)s->n];
         if (two[0] == two[1])
             continue;
         if (k % 2)
             memcpy(v.centre, views[two[0]->from].centre, sizeof v.centre);
         turn_to(&v, two);
-        const int near = adcgs_sights_near(&v, s, roughly);
+        const int near = adcgs_correspondences_count_inliers(&v, s, roughly);
         if (near > most) {
             most = near;
             best = v;

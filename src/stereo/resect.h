@@ -9,18 +9,19 @@
 #include "stereo/correspondence.h"
 
 /** Reprojection error in pixels; infinite if the point is behind the camera. */
-double adcgs_sight_off(const adcgs_stereo_view *view, const adcgs_sight *sight);
+double adcgs_reprojection_error(const adcgs_stereo_view *view, const adcgs_correspondence *match);
 
 /** Number of correspondences with an error of less than `off` pixels. */
-int adcgs_sights_near(const adcgs_stereo_view *view, const adcgs_sights *sights, double off);
+int adcgs_correspondences_count_inliers(const adcgs_stereo_view *view, const adcgs_correspondences *matches, double off);
 
 /** Moves a view to the pose of least squares; its image is not used. off: expected initial error in pixels. */
-void adcgs_resect(adcgs_stereo_view *view, const adcgs_sights *sights, double off);
+void adcgs_resect(adcgs_stereo_view *view, const adcgs_correspondences *matches, double off);
 
 /**
  * The same without an initial pose. views: the other cameras, indexed by the correspondences' `from`. The camera may be at its
  * given position or at the position of another camera. Random choices are seeded with `seed`.
  */
-void adcgs_resect_anywhere(adcgs_stereo_view *view, const adcgs_sights *sights, const adcgs_stereo_view *views, uint64_t seed);
+void adcgs_resect_anywhere(adcgs_stereo_view *view, const adcgs_correspondences *matches, const adcgs_stereo_view *views,
+                           uint64_t seed);
 
 #endif

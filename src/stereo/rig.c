@@ -12,8 +12,8 @@ enum {
     PIXELS_LEAST = 4096, /* pixels: minimum size of an image for matching */
     PIXELS_MOST = 28000  /* pixels: maximum size of a reduced image */
 };
-#define USUAL 18              /* levels of 255: maximum difference of a pixel from its background */
-#define USUAL_SHARE 0.55      /* minimum share of the frames in which a pixel must show its background */
+#define BACKGROUND_MAX_LEVELS 18 /* levels of 255: maximum difference of a pixel from its background */
+#define BACKGROUND_SHARE_MIN 0.55 /* minimum share of the frames in which a pixel must show its background */
 #define NEAREST 0.2           /* scene units: default minimum depth, from depths observed in such units */
 #define FARTHEST 8.0          /* scene units: default maximum depth, likewise */
 
@@ -37,7 +37,7 @@ static void index_clear(index *x)
 /* ---- Single moving camera ---- */
 
 enum {
-    FILM_LEAST = 8, /* minimum number of images */
+    MONOCULAR_FRAMES_MIN = 8, /* minimum number of images */
     ALIKE_OF_4 = 3  /* of four images: minimum number with the viewing direction of the previous one */
 };
 #define ALIKE 0.966 /* minimum cosine between such directions */
@@ -66,7 +66,7 @@ static int goes_on(const index *x, const timed *all)
 
 static adcgs_status find_film(index *x, adcgs_error *error)
 {
-    if (x->n < FILM_LEAST || x->n_cameras <= x->n / 2 || x->n_times < x->n)
+    if (x->n < MONOCULAR_FRAMES_MIN || x->n_cameras <= x->n / 2 || x->n_times < x->n)
         return ADCGS_OK;
     timed *all = adcgs_alloc(NULL, x->n, sizeof *all, error);
     if (!all)
@@ -144,7 +144,7 @@ static uint8_t *to_bytes(const float *rgb, size_t plane, adcgs_error *error)
 }
 
 static adcgs_status load(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_stereo_options *o,
-                         adcgs_stereo_camera *camera, int moment, adcgs_error *error)
+                         adcgs_stereo_camera *camera, int frame, adcgs_error *error)
 {
     float *rgb;
     adcgs_camera small;
@@ -152,16 +152,16 @@ static adcgs_status load(const adcgs_scene *scene, const adcgs_scene_view *view,
     const int divide = ADCGS_MAX((int)ceil(sqrt(pixels / PIXELS_MOST)), 1);
     ADCGS_TRY(adcgs_scene_load(scene, view, divide, &rgb, &small, error));
     set_view(&camera->view, &small, o);
-    camera->shown[moment] = to_bytes(rgb, (size_t)small.width * (size_t)small.height, error);
+    camera->frame[frame] = to_bytes(rgb, (size_t)small.width * (size_t)small.height, error);
     free(rgb);
-    return camera->shown[moment] ? ADCGS_OK : adcgs_alloc_status(error);
+    return camera->frame[frame] ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
-void adcgs_stereo_rig_take(const adcgs_stereo_camera *camera, int moment, float *pixels)
+void adcgs_stereo_rig_get_frame(const adcgs_stereo_camera *camera, int frame, float *pixels)
 {
     const size_t n = 4 * (size_t)camera->view.w * (size_t)camera->view.h;
     for (size_t i = 0; i < n; i++)
-        pixels[i] = camera->shown[moment][i] * (1.0f / 255);
+        pixels[i] = camera->frame[frame][i] * (1.0f / 255);
 }
 
 /** Binomial filter over 5 pixels of a line of n pixels, `step` apart. Unknown pixels have no weight. */
@@ -183,15 +183,15 @@ static void soften_line(uint8_t *line, int n, size_t step, uint8_t *copy)
     }
 }
 
-adcgs_status adcgs_stereo_rig_soften(adcgs_stereo_rig *rig, adcgs_error *error)
+adcgs_status adcgs_stereo_rig_smooth(adcgs_stereo_rig *rig, adcgs_error *error)
 {
     for (int c = 0; c < rig->n_cameras; c++) {
         const int w = rig->camera[c].view.w, h = rig->camera[c].view.h;
         uint8_t *copy = adcgs_alloc(NULL, 4 * (size_t)ADCGS_MAX(w, h), 1, error);
         if (!copy)
             return adcgs_alloc_status(error);
-        for (int m = 0; m < rig->n_moments; m++) {
-            uint8_t *shown = rig->camera[c].shown[m];
+        for (int m = 0; m < rig->n_frames; m++) {
+            uint8_t *shown = rig->camera[c].frame[m];
             for (int y = 0; shown && y < h; y++)
                 soften_line(shown + 4 * (size_t)y * (size_t)w, w, 4, copy);
             for (int x = 0; shown && x < w; x++)
@@ -218,35 +218,35 @@ static uint8_t middle_of(uint8_t *values, int n)
 /** Sets the background to the median of the pixel over the frames, and marks the pixel if too few frames are close to it. */
 static void set_usual(adcgs_stereo_camera *c, size_t pixel)
 {
-    uint8_t values[ADCGS_MATCHING_FRAMES_MAX], usual[4];
+    uint8_t values[ADCGS_MATCHING_FRAMES_MAX], background[4];
     int n = 0, near = 0;
     for (size_t k = 0; k < 4; k++) {
         n = 0;
         for (int m = 0; m < ADCGS_MATCHING_FRAMES_MAX; m++)
-            if (c->shown[m])
-                values[n++] = c->shown[m][4 * pixel + k];
-        usual[k] = middle_of(values, n);
-        c->usual[4 * pixel + k] = usual[k] * (1.0f / 255);
+            if (c->frame[m])
+                values[n++] = c->frame[m][4 * pixel + k];
+        background[k] = middle_of(values, n);
+        c->background[4 * pixel + k] = background[k] * (1.0f / 255);
     }
     for (int m = 0; m < ADCGS_MATCHING_FRAMES_MAX; m++) {
         int off = 0;
-        for (size_t k = 0; c->shown[m] && k < 4; k++)
-            off = ADCGS_MAX(off, abs(c->shown[m][4 * pixel + k] - usual[k]));
-        near += c->shown[m] && off <= USUAL;
+        for (size_t k = 0; c->frame[m] && k < 4; k++)
+            off = ADCGS_MAX(off, abs(c->frame[m][4 * pixel + k] - background[k]));
+        near += c->frame[m] && off <= BACKGROUND_MAX_LEVELS;
     }
-    c->changes[pixel] = near < USUAL_SHARE * n;
+    c->unstable[pixel] = near < BACKGROUND_SHARE_MIN * n;
 }
 
 static adcgs_status find_usual(adcgs_stereo_camera *c, adcgs_error *error)
 {
     const size_t plane = (size_t)c->view.w * (size_t)c->view.h;
-    c->usual = adcgs_alloc(NULL, 4 * plane, sizeof *c->usual, error);
-    c->changes = adcgs_alloc(NULL, plane, 1, error);
-    if (!c->usual || !c->changes)
+    c->background = adcgs_alloc(NULL, 4 * plane, sizeof *c->background, error);
+    c->unstable = adcgs_alloc(NULL, plane, 1, error);
+    if (!c->background || !c->unstable)
         return adcgs_alloc_status(error);
     for (size_t i = 0; i < plane; i++)
         set_usual(c, i);
-    c->view.pixels = c->usual;
+    c->view.pixels = c->background;
     return ADCGS_OK;
 }
 
@@ -259,7 +259,7 @@ static void set_depths(adcgs_stereo_rig *rig, const adcgs_scene *scene, const ad
     rig->farthest = fmax(FARTHEST, 4 * rig->nearest);
 }
 
-static float moment_of(const adcgs_scene *scene, double time)
+static float time_of(const adcgs_scene *scene, double time)
 {
     return scene->duration > 0 ? (float)fmin(fmax(time / scene->duration, 0), 1) : 0;
 }
@@ -272,10 +272,10 @@ static adcgs_status load_camera(const adcgs_stereo_rig *rig, adcgs_stereo_camera
     int m = 0, loaded = 0;
     for (uint32_t i = 0; i < n; i++) {
         const adcgs_scene_view *view = &x->views[views[i]];
-        const float t = moment_of(scene, view->time);
-        while (m < rig->n_moments && rig->moment[m] < t)
+        const float t = time_of(scene, view->time);
+        while (m < rig->n_frames && rig->frame_time[m] < t)
             m++;
-        if (m == rig->n_moments || rig->moment[m] > t || camera->shown[m])
+        if (m == rig->n_frames || rig->frame_time[m] > t || camera->frame[m])
             continue;
         ADCGS_TRY(load(scene, view, o, camera, m, error));
         loaded++;
@@ -299,20 +299,21 @@ static adcgs_status load_cameras(adcgs_stereo_rig *rig, const adcgs_scene *scene
     return ADCGS_OK;
 }
 
-static uint32_t moments_of(const adcgs_stereo_options *o)
+static uint32_t frames_of(const adcgs_stereo_options *o)
 {
-    return o->moments ? o->moments : ADCGS_MATCHING_FRAMES_MAX;
+    return o->frames ? o->frames : ADCGS_MATCHING_FRAMES_MAX;
 }
 
 /** Loads evenly spaced images of a moving camera as one image each of static cameras. */
 static adcgs_status load_film(adcgs_stereo_rig *rig, const adcgs_scene *scene, const index *x, const adcgs_stereo_options *o,
                               adcgs_error *error)
 {
-    rig->n_cameras = rig->n_moments = (int)ADCGS_MIN(ADCGS_MIN(x->n, ADCGS_STEREO_CAMERAS), ADCGS_MAX(moments_of(o), FILM_LEAST));
-    rig->film = 1;
+    rig->n_cameras = rig->n_frames = (int)ADCGS_MIN(ADCGS_MIN(x->n, ADCGS_STEREO_CAMERAS),
+                                                    ADCGS_MAX(frames_of(o), MONOCULAR_FRAMES_MIN));
+    rig->monocular = 1;
     for (int c = 0; c < rig->n_cameras; c++) {
         const uint32_t view = x->film[(uint64_t)c * (x->n - 1) / (uint64_t)(rig->n_cameras - 1)];
-        rig->moment[c] = moment_of(scene, x->views[view].time);
+        rig->frame_time[c] = time_of(scene, x->views[view].time);
         rig->camera[c].first = view;
         ADCGS_TRY(load(scene, &x->views[view], o, &rig->camera[c], c, error));
         ADCGS_TRY(find_usual(&rig->camera[c], error));
@@ -330,10 +331,10 @@ adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *sce
         status = load_film(rig, scene, &x, options, error);
     } else if (status == ADCGS_OK) {
         rig->n_cameras = (int)ADCGS_MIN(x.n_cameras, ADCGS_STEREO_CAMERAS);
-        rig->n_moments = (int)ADCGS_MIN(x.n_times, moments_of(options));
-        for (int m = 0; m < rig->n_moments; m++) {
-            const uint64_t last = (uint64_t)ADCGS_MAX(rig->n_moments - 1, 1);
-            rig->moment[m] = moment_of(scene, x.times[(uint64_t)m * (x.n_times - 1) / last]);
+        rig->n_frames = (int)ADCGS_MIN(x.n_times, frames_of(options));
+        for (int m = 0; m < rig->n_frames; m++) {
+            const uint64_t last = (uint64_t)ADCGS_MAX(rig->n_frames - 1, 1);
+            rig->frame_time[m] = time_of(scene, x.times[(uint64_t)m * (x.n_times - 1) / last]);
         }
         status = load_cameras(rig, scene, &x, options, error);
     }
@@ -344,10 +345,10 @@ adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *sce
 void adcgs_stereo_rig_clear(adcgs_stereo_rig *rig)
 {
     for (int c = 0; c < rig->n_cameras; c++) {
-        adcgs_free(NULL, rig->camera[c].usual);
-        adcgs_free(NULL, rig->camera[c].changes);
+        adcgs_free(NULL, rig->camera[c].background);
+        adcgs_free(NULL, rig->camera[c].unstable);
         for (int m = 0; m < ADCGS_MATCHING_FRAMES_MAX; m++)
-            adcgs_free(NULL, rig->camera[c].shown[m]);
+            adcgs_free(NULL, rig->camera[c].frame[m]);
     }
     memset(rig, 0, sizeof *rig);
 }

@@ -28,17 +28,17 @@ typedef struct adcgs_stereo_view {
 typedef struct adcgs_stereo_camera {
     adcgs_stereo_view view;                /**< pixels: the background */
     uint32_t first;                     /**< index of its first training view */
-    float *usual;                       /**< [h][w][4] background, the median over frames; owned */
-    uint8_t *changes;                   /**< [h][w] 1: no stable background */
-    uint8_t *shown[ADCGS_MATCHING_FRAMES_MAX]; /**< [h][w][4] image of each frame; NULL: none */
+    float *background;                  /**< [h][w][4] background, the median over frames; owned */
+    uint8_t *unstable;                  /**< [h][w] 1: no stable background */
+    uint8_t *frame[ADCGS_MATCHING_FRAMES_MAX]; /**< [h][w][4] image of each frame; NULL: none */
 } adcgs_stereo_camera;
 
 /** Zero-initialise before use. */
 typedef struct adcgs_stereo_rig {
-    int n_cameras, n_moments;
-    int film; /**< 1: a single moving camera; camera m has an image of frame m only */
+    int n_cameras, n_frames;
+    int monocular; /**< 1: a single moving camera; camera m has an image of frame m only */
     adcgs_stereo_camera camera[ADCGS_STEREO_CAMERAS];
-    float moment[ADCGS_MATCHING_FRAMES_MAX]; /**< t of each frame, ascending */
+    float frame_time[ADCGS_MATCHING_FRAMES_MAX]; /**< t of each frame, ascending */
     double nearest, farthest;        /**< range of depths to search, scene units */
 } adcgs_stereo_rig;
 
@@ -49,19 +49,19 @@ void adcgs_stereo_rig_clear(adcgs_stereo_rig *rig);
 enum { ADCGS_STEREO_MOVED = 18 }; /**< levels of 255: maximum difference from the background without motion */
 
 /** True if a pixel differs from the background in a frame. The frame must have an image. */
-static inline int adcgs_stereo_rig_differs(const adcgs_stereo_camera *c, int moment, int pixel)
+static inline int adcgs_stereo_rig_differs(const adcgs_stereo_camera *c, int frame, int pixel)
 {
     int most = 0;
     for (int k = 0; k < 3; k++)
-        most = ADCGS_MAX(most, abs(c->shown[moment][4 * pixel + k] - (int)(c->usual[4 * pixel + k] * 255 + 0.5f)));
-    return most > ADCGS_STEREO_MOVED || c->changes[pixel];
+        most = ADCGS_MAX(most, abs(c->frame[frame][4 * pixel + k] - (int)(c->background[4 * pixel + k] * 255 + 0.5f)));
+    return most > ADCGS_STEREO_MOVED || c->unstable[pixel];
 }
 
 /** Converts the image of a frame to floats, [h][w][4]. */
-void adcgs_stereo_rig_take(const adcgs_stereo_camera *camera, int moment, float *pixels);
+void adcgs_stereo_rig_get_frame(const adcgs_stereo_camera *camera, int frame, float *pixels);
 
 /** Smooths all images, so that details of one or two pixels do not disturb the registration of bodies. */
-adcgs_status adcgs_stereo_rig_soften(adcgs_stereo_rig *rig, adcgs_error *error);
+adcgs_status adcgs_stereo_rig_smooth(adcgs_stereo_rig *rig, adcgs_error *error);
 
 /** Returns the first failure of n parallel jobs. Each job has its own error, initialised to zeros. */
 static inline adcgs_status adcgs_stereo_first_failure(const adcgs_error *errors, int n, adcgs_error *error)
@@ -73,7 +73,7 @@ static inline adcgs_status adcgs_stereo_first_failure(const adcgs_error *errors,
 }
 
 /** Distance between two camera centres, in scene units. */
-static inline double adcgs_stereo_apart(const adcgs_stereo_view *a, const adcgs_stereo_view *b)
+static inline double adcgs_stereo_baseline(const adcgs_stereo_view *a, const adcgs_stereo_view *b)
 {
     double square = 0;
     for (int i = 0; i < 3; i++)

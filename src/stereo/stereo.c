@@ -30,7 +30,7 @@ struct adcgs_stereo_maps {
     int n;
     adcgs_stereo_view view[ADCGS_STEREO_CAMERAS];
     adcgs_depths depths[ADCGS_STEREO_CAMERAS];
-    const uint8_t *changes[ADCGS_STEREO_CAMERAS]; /* [h][w] of the rig, valid while the rig exists */
+    const uint8_t *unstable[ADCGS_STEREO_CAMERAS]; /* [h][w] of the rig, valid while the rig exists */
 };
 
 /* ---- Neighbours ---- */
@@ -42,7 +42,7 @@ static void choose_sources(adcgs_sweep *s, const adcgs_stereo_view *views, int n
     s->view = &views[own];
     s->n_sources = 0;
     for (int i = 0; i < n; i++) {
-        const double d = adcgs_stereo_apart(&views[own], &views[i]);
+        const double d = adcgs_stereo_baseline(&views[own], &views[i]);
         if (i == own || d < APART || adcgs_stereo_axes_dot(&views[own], &views[i]) < AXES_ALIKE)
             continue;
         int k = s->n_sources;
@@ -104,17 +104,17 @@ static adcgs_status find_still(adcgs_stereo *out, adcgs_stereo_list *list, const
     adcgs_status status = ADCGS_OK;
     for (int c = 0; c < rig->n_cameras && status == ADCGS_OK; c++) {
         const adcgs_stereo_camera *camera = &rig->camera[c];
-        if (!camera->usual)
+        if (!camera->background)
             continue;
         const size_t plane = (size_t)camera->view.w * (size_t)camera->view.h;
         const int i = maps->n++;
         maps->view[i] = camera->view;
-        maps->changes[i] = camera->changes;
+        maps->unstable[i] = camera->unstable;
         memcpy(parts[i], (const int[]){ 0, 0, camera->view.w, camera->view.h }, sizeof parts[i]);
         wanted[i] = still[i] = adcgs_alloc(NULL, plane, 1, error);
         status = still[i] ? ADCGS_OK : adcgs_alloc_status(error);
         for (size_t k = 0; still[i] && k < plane; k++)
-            still[i][k] = !camera->changes[k];
+            still[i][k] = !camera->unstable[k];
     }
     match m = { .n = maps->n, .views = maps->view, .parts = (const int(*)[4])parts, .nearest = rig->nearest,
                 .farthest = rig->farthest, .depths = maps->depths };
@@ -134,12 +134,12 @@ static adcgs_status find_still(adcgs_stereo *out, adcgs_stereo_list *list, const
  * Marks moving pixels: most of the window, or a line through a differing pixel, differs from the background. Also marks pixels
  * whose window shows only background.
  */
-static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t *moves, uint8_t *still, int part[4])
+static void mark(const adcgs_stereo_camera *c, int frame, uint8_t *off, uint8_t *moves, uint8_t *still, int part[4])
 {
     const int w = c->view.w, h = c->view.h;
     int left = w, right = -1, top = h, bottom = -1, n = 0;
     for (int i = 0; i < w * h; i++)
-        off[i] = (uint8_t)(c->shown[moment][4 * i + 3] && adcgs_stereo_rig_differs(c, moment, i));
+        off[i] = (uint8_t)(c->frame[frame][4 * i + 3] && adcgs_stereo_rig_differs(c, frame, i));
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
             int sum = 0;
@@ -164,20 +164,20 @@ static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t
 }
 
 /** Working memory of one frame. */
-typedef struct moment {
+typedef struct frame_layer {
     adcgs_stereo_view view[ADCGS_STEREO_CAMERAS];
     int part[ADCGS_STEREO_CAMERAS][4];
     adcgs_depths depths[ADCGS_STEREO_CAMERAS];
     float *pixels[ADCGS_STEREO_CAMERAS];
     uint8_t *moves[ADCGS_STEREO_CAMERAS]; /* [3][h][w] the view's moves and still, and scratch */
     int n;
-} moment;
+} frame_layer;
 
-static adcgs_status take_moment(moment *o, const adcgs_stereo_rig *rig, int m, adcgs_error *error)
+static adcgs_status read_frame(frame_layer *o, const adcgs_stereo_rig *rig, int m, adcgs_error *error)
 {
     for (int c = 0; c < rig->n_cameras; c++) {
         const adcgs_stereo_camera *camera = &rig->camera[c];
-        if (!camera->usual || !camera->shown[m])
+        if (!camera->background || !camera->frame[m])
             continue;
         const size_t plane = (size_t)camera->view.w * (size_t)camera->view.h;
         const int i = o->n++;
@@ -185,7 +185,7 @@ static adcgs_status take_moment(moment *o, const adcgs_stereo_rig *rig, int m, a
         o->moves[i] = adcgs_alloc(NULL, 3 * plane, 1, error);
         if (!o->pixels[i] || !o->moves[i])
             return adcgs_alloc_status(error);
-        adcgs_stereo_rig_take(camera, m, o->pixels[i]);
+        adcgs_stereo_rig_get_frame(camera, m, o->pixels[i]);
         o->view[i] = camera->view;
         o->view[i].pixels = o->pixels[i];
         o->view[i].moves = o->moves[i];
@@ -198,7 +198,7 @@ static adcgs_status take_moment(moment *o, const adcgs_stereo_rig *rig, int m, a
     return ADCGS_OK;
 }
 
-static void moment_free(moment *o)
+static void frame_free(frame_layer *o)
 {
     for (int i = 0; o && i < o->n; i++) {
         adcgs_free(NULL, o->pixels[i]);
@@ -219,13 +219,13 @@ static adcgs_stereo_in_place in_place(const adcgs_stereo_maps *maps, const doubl
             continue;
         adcgs_stereo_rig_project(v, x, at, &depth);
         same++;
-        still += !maps->changes[k][(int)at[1] * v->w + (int)at[0]];
+        still += !maps->unstable[k][(int)at[1] * v->w + (int)at[0]];
     }
     return still >= 2 ? ADCGS_PLACE_STILL : same >= 2 ? ADCGS_PLACE_COMMON : ADCGS_PLACE_OWN;
 }
 
 /** True if no view has a source for matching. */
-static int all_stand_apart(const moment *o)
+static int all_stand_apart(const frame_layer *o)
 {
     adcgs_sweep s = { .n_sources = 0 };
     for (int i = 0; i < o->n && !s.n_sources; i++)
@@ -237,20 +237,20 @@ static int all_stand_apart(const moment *o)
 static adcgs_status match_moment(adcgs_stereo_list *found, const adcgs_stereo_rig *rig, int m, adcgs_pool *pool,
                                  adcgs_error *error)
 {
-    moment *o = adcgs_alloc(NULL, 1, sizeof *o, error);
+    frame_layer *o = adcgs_alloc(NULL, 1, sizeof *o, error);
     if (!o)
         return adcgs_alloc_status(error);
-    adcgs_status status = take_moment(o, rig, m, error);
+    adcgs_status status = read_frame(o, rig, m, error);
     match job = { .n = o->n, .views = o->view, .parts = (const int(*)[4])o->part, .nearest = rig->nearest,
                   .farthest = rig->farthest, .depths = o->depths };
-    const adcgs_stereo_point like = { .t = rig->moment[m], .moves = 1 };
+    const adcgs_stereo_point like = { .t = rig->frame_time[m], .moves = 1 };
     if (status == ADCGS_OK)
         status = match_all(&job, pool, error);
     if (status == ADCGS_OK)
         status = adcgs_fuse(found, o->depths, o->n, (const uint8_t *const *)o->moves, &like, error);
     if (status == ADCGS_OK && all_stand_apart(o))
         status = adcgs_hull_find(found, o->view, (const uint8_t *const *)o->moves, o->n, &like, error);
-    moment_free(o);
+    frame_free(o);
     return status;
 }
 
@@ -258,7 +258,7 @@ static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig 
                                 uint32_t most, adcgs_pool *pool, adcgs_error *error)
 {
     adcgs_stereo_list found = { 0, 0, NULL };
-    adcgs_status status = rig->film ? adcgs_film_find_moving(&found, rig, maps->depths, m, error)
+    adcgs_status status = rig->monocular ? adcgs_monocular_find_moving(&found, rig, maps->depths, m, error)
                                     : match_moment(&found, rig, m, pool, error);
     for (size_t i = 0; i < found.n; i++)
         found.point[i].in_place = (uint8_t)in_place(maps, found.point[i].x);
@@ -278,19 +278,19 @@ static adcgs_status find(adcgs_stereo *out, adcgs_stereo_rig *rig, const adcgs_s
     adcgs_stereo_list still = { 0, 0, NULL }, moving = { 0, 0, NULL };
     adcgs_status status = find_still(out, &still, rig, pool, error);
     if (status == ADCGS_OK && options->judges)
-        status = adcgs_stereo_find_odd(out, rig, out->maps->depths, pool, error);
+        status = adcgs_stereo_find_pose_outliers(out, rig, out->maps->depths, pool, error);
     if (status == ADCGS_OK)
         status = adcgs_stereo_thin(&still, options->still, error);
-    if (status == ADCGS_OK && rig->film)
-        status = adcgs_film_set_usual(rig, out->maps->depths, pool, error);
-    for (int m = 0; m < rig->n_moments && rig->n_moments > 1 && status == ADCGS_OK && options->moving; m++)
+    if (status == ADCGS_OK && rig->monocular)
+        status = adcgs_monocular_set_background(rig, out->maps->depths, pool, error);
+    for (int m = 0; m < rig->n_frames && rig->n_frames > 1 && status == ADCGS_OK && options->moving; m++)
         status = find_moving(&moving, rig, out->maps, m, options->moving, pool, error);
     if (status == ADCGS_OK)
-        status = adcgs_stereo_follow(moving.point, (uint32_t)moving.n, error);
-    if (status == ADCGS_OK && rig->film)
-        status = adcgs_film_even_velocities(moving.point, (uint32_t)moving.n, rig, error);
-    if (status == ADCGS_OK && !rig->film)
-        adcgs_stereo_find_ends(moving.point, (uint32_t)moving.n, rig, out->maps->depths, pool);
+        status = adcgs_stereo_find_velocities(moving.point, (uint32_t)moving.n, error);
+    if (status == ADCGS_OK && rig->monocular)
+        status = adcgs_monocular_smooth_velocities(moving.point, (uint32_t)moving.n, rig, error);
+    if (status == ADCGS_OK && !rig->monocular)
+        adcgs_stereo_trim_lifetimes(moving.point, (uint32_t)moving.n, rig, out->maps->depths, pool);
     out->still = still.point;
     out->n_still = (uint32_t)still.n;
     out->moving = moving.point;
@@ -305,15 +305,15 @@ adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, cons
     *out = (adcgs_stereo){ .maps = adcgs_alloc(NULL, 1, sizeof *out->maps, error) };
     adcgs_status status = rig && out->maps ? adcgs_stereo_rig_init(rig, scene, options, error) : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
-        out->moment = adcgs_alloc(NULL, (size_t)rig->n_moments, sizeof *out->moment, error);
-        status = out->moment ? ADCGS_OK : adcgs_alloc_status(error);
+        out->frame_time = adcgs_alloc(NULL, (size_t)rig->n_frames, sizeof *out->frame_time, error);
+        status = out->frame_time ? ADCGS_OK : adcgs_alloc_status(error);
     }
     if (status == ADCGS_OK) {
-        out->n_moments = (uint32_t)rig->n_moments;
-        out->film = rig->film;
-        memcpy(out->moment, rig->moment, out->n_moments * sizeof *out->moment);
+        out->n_frames = (uint32_t)rig->n_frames;
+        out->monocular = rig->monocular;
+        memcpy(out->frame_time, rig->frame_time, out->n_frames * sizeof *out->frame_time);
         if (options->judges)
-            status = adcgs_stereo_poses_off(rig, &out->poses, pool, error);
+            status = adcgs_stereo_measure_pose_error(rig, &out->poses, pool, error);
     }
     if (status == ADCGS_OK) {
         out->poses.pixels = (double)scene->views[ADCGS_SPLIT_TRAIN][0].camera.width / rig->camera[0].view.w;
@@ -321,7 +321,7 @@ adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, cons
     }
     for (int i = 0; out->maps && i < out->maps->n; i++) { /* the images are released with the rig */
         out->maps->view[i].pixels = NULL;
-        out->maps->changes[i] = NULL;
+        out->maps->unstable[i] = NULL;
     }
     if (rig)
         adcgs_stereo_rig_clear(rig);
@@ -338,7 +338,7 @@ void adcgs_stereo_clear(adcgs_stereo *s)
     adcgs_free(NULL, s->maps);
     adcgs_free(NULL, s->still);
     adcgs_free(NULL, s->moving);
-    adcgs_free(NULL, s->moment);
+    adcgs_free(NULL, s->frame_time);
     for (uint32_t i = 0; i < s->n_bodies; i++)
         adcgs_free(NULL, s->body[i].pose);
     adcgs_free(NULL, s->body);

@@ -47,7 +47,7 @@ typedef struct adcgs_stereo_pose {
 /** A rigid body, tracked over all frames. The signs of q are such that consecutive poses are close. */
 typedef struct adcgs_stereo_body {
     double pivot[3];         /**< scene units */
-    adcgs_stereo_pose *pose; /**< [n_moments] */
+    adcgs_stereo_pose *pose; /**< [n_frames] */
     uint32_t n;              /**< number of its points */
 } adcgs_stereo_body;
 
@@ -55,7 +55,7 @@ typedef struct adcgs_stereo_options {
     double origin[3], scale; /**< of scene units, see adcgs_scene_frame() */
     uint32_t still;          /**< maximum number of static points */
     uint32_t moving;         /**< maximum number of moving points per frame */
-    uint32_t moments;        /**< maximum number of matched frames, evenly spaced; 0: ADCGS_MATCHING_FRAMES_MAX */
+    uint32_t frames;         /**< maximum number of matched frames, evenly spaced; 0: ADCGS_MATCHING_FRAMES_MAX */
     uint32_t bodies;         /**< maximum number of rigid bodies, up to ADCGS_BODIES_MAX; 0: no search */
     int judges;              /**< 1: measure pose errors and report outliers */
 } adcgs_stereo_options;
@@ -64,21 +64,21 @@ typedef struct adcgs_stereo_options {
  * Pose errors. A pixel of one camera lies on its epipolar line in another image, at any depth. If matches lie off these lines,
  * the poses or the lens parameters are wrong.
  */
-typedef struct adcgs_stereo_off {
+typedef struct adcgs_stereo_pose_error {
     int pairs;     /**< camera pairs with enough matches; 0: no result */
     double median; /**< median over pairs of |median offset of a pair's matches from the line|, pixels of reduced images */
     double pixels; /**< pixels of the original image per pixel of a reduced image */
-} adcgs_stereo_off;
+} adcgs_stereo_pose_error;
 
-enum { ADCGS_STEREO_ODD = 4 };
+enum { ADCGS_POSE_OUTLIERS_MAX = 4 };
 
 /** A camera whose image contradicts its pose, and the correction by the fitted pose. */
-typedef struct adcgs_stereo_odd {
+typedef struct adcgs_pose_outlier {
     uint32_t view; /**< index of its first training view */
     double off;    /**< median error, pixels of reduced images */
     double turned; /**< degrees: rotation to the fitted pose */
     double moved;  /**< translation to it, relative to the distance of the points */
-} adcgs_stereo_odd;
+} adcgs_pose_outlier;
 
 /** Static depth maps, which also bound free space. */
 typedef struct adcgs_stereo_maps adcgs_stereo_maps;
@@ -88,14 +88,14 @@ typedef struct adcgs_stereo {
     uint32_t n_still, n_moving;
     adcgs_stereo_point *still;
     adcgs_stereo_point *moving; /**< ascending in t */
-    int film;                   /**< 1: a single moving camera, so each frame has one view */
-    uint32_t n_moments;
-    float *moment;              /**< [n_moments] t of the matched frames, ascending */
+    int monocular;              /**< 1: a single moving camera, so each frame has one view */
+    uint32_t n_frames;
+    float *frame_time;          /**< [n_frames] t of the matched frames, ascending */
     uint32_t n_bodies;          /**< at most ADCGS_BODIES_MAX, the largest first */
     adcgs_stereo_body *body;
-    adcgs_stereo_off poses;     /**< pose errors and outliers, if options.judges */
-    int n_odd;
-    adcgs_stereo_odd odd[ADCGS_STEREO_ODD];
+    adcgs_stereo_pose_error poses; /**< pose errors and outliers, if options.judges */
+    int n_outliers;
+    adcgs_pose_outlier outlier[ADCGS_POSE_OUTLIERS_MAX];
     adcgs_stereo_maps *maps;
 } adcgs_stereo;
 
@@ -113,8 +113,8 @@ void adcgs_stereo_clear(adcgs_stereo *stereo);
 /** Time between adjacent frames, 1: whole duration. */
 static inline float adcgs_stereo_spacing(const adcgs_stereo *stereo)
 {
-    const uint32_t n = stereo->n_moments;
-    return n > 1 ? (stereo->moment[n - 1] - stereo->moment[0]) / (float)(n - 1) : 1;
+    const uint32_t n = stereo->n_frames;
+    return n > 1 ? (stereo->frame_time[n - 1] - stereo->frame_time[0]) / (float)(n - 1) : 1;
 }
 
 /** True if most cameras whose image contains the position, in scene units, have a depth there, in front of it or behind it. */

@@ -23,26 +23,26 @@ enum {
 #define TURN_STEP 0.26   /* radians between rotations */
 enum { TURNS = 4, STARTS = 3 + 2 * 13 * 2 * TURNS }; /* steps to each side; 2 positions x 13 axes */
 
-static const adcgs_lay lay_far = { .reach = 14, .sharp = 5, .rounds = 6 };
-static const adcgs_lay lay_near = { .reach = 5, .sharp = 2.5, .rounds = 4 };
-static const adcgs_lay lay_close = { .reach = 3, .sharp = 1.5, .rounds = 5 };
+static const adcgs_registration_stage lay_far = { .reach = 14, .sharp = 5, .rounds = 6 };
+static const adcgs_registration_stage lay_near = { .reach = 5, .sharp = 2.5, .rounds = 4 };
+static const adcgs_registration_stage lay_close = { .reach = 3, .sharp = 1.5, .rounds = 5 };
 
 static uint32_t stride_for(const adcgs_body_model *m, uint32_t wanted)
 {
     return ADCGS_MAX(m->n / wanted, 1);
 }
 
-static double score_of(const adcgs_placing *p)
+static double score_of(const adcgs_placement *p)
 {
     return p->share * p->light;
 }
 
-static int is_good(const adcgs_placing *p)
+static int is_good(const adcgs_placement *p)
 {
     return p->share > SHARE_GOOD && p->light > LIGHT_GOOD;
 }
 
-static int is_sure(const adcgs_placing *p)
+static int is_sure(const adcgs_placement *p)
 {
     return p->share > SHARE_SURE && p->light > LIGHT_SURE;
 }
@@ -67,9 +67,9 @@ typedef struct search {
     const adcgs_track *t;
     const adcgs_layers *l;
     adcgs_pool *pool;
-    adcgs_placing *start; /* [STARTS] initial poses to try */
-    int moment, starts, n;
-    adcgs_placing best[BEST];
+    adcgs_placement *start; /* [STARTS] initial poses to try */
+    int frame, starts, n;
+    adcgs_placement best[BEST];
 } search;
 
 double adcgs_track_between(const adcgs_track *t, const adcgs_rigid *a, const adcgs_rigid *b)
@@ -87,7 +87,7 @@ double adcgs_track_between(const adcgs_track *t, const adcgs_rigid *a, const adc
     return n ? sqrt(sum / n) : 0;
 }
 
-static void keep_best(search *s, const adcgs_placing *p)
+static void keep_best(search *s, const adcgs_placement *p)
 {
     int at = s->n;
     for (int i = 0; i < s->n; i++)
@@ -106,14 +106,14 @@ static void keep_best(search *s, const adcgs_placing *p)
     s->best[at] = *p;
 }
 
-static void add_start(search *s, const adcgs_placing *from, const adcgs_rigid *at)
+static void add_start(search *s, const adcgs_placement *from, const adcgs_rigid *at)
 {
     s->start[s->starts] = *from;
     s->start[s->starts++].at = *at;
 }
 
 /** Adds rotations about 13 axes to both sides. */
-static void add_turns(search *s, const adcgs_placing *from, const adcgs_rigid *base)
+static void add_turns(search *s, const adcgs_placement *from, const adcgs_rigid *base)
 {
     double rest[3], centre[3];
     adcgs_track_centre(s->t, rest);
@@ -137,14 +137,14 @@ static void try_start(void *arg, int i, int thread)
 {
     const search *s = arg;
     const adcgs_body_model *m = &s->t->model;
-    const adcgs_moment_views *views = &s->l->views[s->moment];
-    adcgs_lay far = lay_far, near = lay_near;
+    const adcgs_frame_views *views = &s->l->views[s->frame];
+    adcgs_registration_stage far = lay_far, near = lay_near;
     (void)thread;
     far.stride = near.stride = stride_for(m, FEW);
-    adcgs_body_lay(m, &s->l->few[s->moment], views, &far, &s->start[i]);
-    adcgs_body_lay(m, &s->l->all[s->moment], views, &near, &s->start[i]);
+    adcgs_body_register(m, &s->l->few[s->frame], views, &far, &s->start[i]);
+    adcgs_body_register(m, &s->l->all[s->frame], views, &near, &s->start[i]);
     adcgs_direct_judge(m, views, near.stride, &s->start[i]);
-    adcgs_body_judge(m, &s->l->all[s->moment], views, near.stride, &s->start[i]);
+    adcgs_body_judge(m, &s->l->all[s->frame], views, near.stride, &s->start[i]);
 }
 
 /** Tries all initial poses that were added. */
@@ -157,26 +157,26 @@ static void try_starts(search *s)
 }
 
 /** Refines a pose to a fraction of a pixel. */
-static void refine(const adcgs_track *t, const adcgs_layers *l, int moment, int is_close, adcgs_placing *p)
+static void refine(const adcgs_track *t, const adcgs_layers *l, int frame, int is_close, adcgs_placement *p)
 {
-    adcgs_lay lay = lay_close;
+    adcgs_registration_stage lay = lay_close;
     const adcgs_body_model *m = &t->model;
     lay.stride = stride_for(m, MANY);
     if (!is_close)
-        adcgs_body_lay(m, &l->all[moment], &l->views[moment], &lay, p);
-    adcgs_direct_refine(m, &l->views[moment], lay.stride, p);
-    adcgs_direct_judge(m, &l->views[moment], lay.stride, p);
-    adcgs_body_judge(m, &l->all[moment], &l->views[moment], lay.stride, p);
+        adcgs_body_register(m, &l->all[frame], &l->views[frame], &lay, p);
+    adcgs_direct_refine(m, &l->views[frame], lay.stride, p);
+    adcgs_direct_judge(m, &l->views[frame], lay.stride, p);
+    adcgs_body_judge(m, &l->all[frame], &l->views[frame], lay.stride, p);
 }
 
 static void refine_best(void *arg, int i, int thread)
 {
     search *s = arg;
     (void)thread;
-    refine(s->t, s->l, s->moment, 0, &s->best[i]);
+    refine(s->t, s->l, s->frame, 0, &s->best[i]);
 }
 
-static void choose(search *s, adcgs_placing *out)
+static void choose(search *s, adcgs_placement *out)
 {
     adcgs_pool_run(s->pool, refine_best, s, s->n);
     *out = s->best[0];
@@ -188,19 +188,19 @@ static void choose(search *s, adcgs_placing *out)
 /* ---- From frame to frame ---- */
 
 /** The two frames with a known pose nearest to a frame; -1: none. */
-static void find_known(const adcgs_track *t, const adcgs_layers *l, int moment, int out[2])
+static void find_known(const adcgs_track *t, const adcgs_layers *l, int frame, int out[2])
 {
     out[0] = out[1] = -1;
     for (int off = 1; off < l->n && out[1] < 0; off++)
-        for (int k = moment - off; k <= moment + off && out[1] < 0; k += 2 * off)
+        for (int k = frame - off; k <= frame + off && out[1] < 0; k += 2 * off)
             if (k >= 0 && k < l->n && t->known[k])
                 out[out[0] >= 0] = k;
 }
 
-void adcgs_track_go_on(const adcgs_track *t, const adcgs_layers *l, int moment, const int known[2], adcgs_rigid *out)
+void adcgs_track_extrapolate(const adcgs_track *t, const adcgs_layers *l, int frame, const int known[2], adcgs_rigid *out)
 {
-    const float *when = l->rig->moment;
-    const double span = (double)(when[known[0]] - when[known[1]]), more = (double)(when[moment] - when[known[0]]);
+    const float *when = l->rig->frame_time;
+    const double span = (double)(when[known[0]] - when[known[1]]), more = (double)(when[frame] - when[known[0]]);
     const int times = (int)fmin(fmax(round(more / span), -4), 4);
     adcgs_rigid step;
     adcgs_rigid_inverse(&t->place[known[1]].at, &step);
@@ -213,9 +213,9 @@ void adcgs_track_go_on(const adcgs_track *t, const adcgs_layers *l, int moment, 
 }
 
 /** Pose shifted by the mean velocity of the body's matching points. */
-static void drift(const adcgs_track *t, const adcgs_layers *l, int moment, int known, adcgs_rigid *out)
+static void drift(const adcgs_track *t, const adcgs_layers *l, int frame, int known, adcgs_rigid *out)
 {
-    const double span = (double)(l->rig->moment[moment] - l->rig->moment[known]);
+    const double span = (double)(l->rig->frame_time[frame] - l->rig->frame_time[known]);
     double sum[3] = { 0, 0, 0 }, n = 0;
     for (uint32_t i = 0; i < t->model.n; i++) {
         double x[3], normal[3];
@@ -233,18 +233,18 @@ static void drift(const adcgs_track *t, const adcgs_layers *l, int moment, int k
 }
 
 /** search: all members except those of the frame. */
-static void find_at(adcgs_track *t, const adcgs_layers *l, int moment, int turns, search s)
+static void find_at(adcgs_track *t, const adcgs_layers *l, int frame, int turns, search s)
 {
     adcgs_rigid base[2];
-    adcgs_placing place;
+    adcgs_placement place;
     int known[2];
-    s.moment = moment;
-    find_known(t, l, moment, known);
-    const adcgs_placing *from = &t->place[known[0]];
-    drift(t, l, moment, known[0], &base[1]);
+    s.frame = frame;
+    find_known(t, l, frame, known);
+    const adcgs_placement *from = &t->place[known[0]];
+    drift(t, l, frame, known[0], &base[1]);
     base[0] = from->at;
     if (known[1] >= 0)
-        adcgs_track_go_on(t, l, moment, known, &base[0]);
+        adcgs_track_extrapolate(t, l, frame, known, &base[0]);
     add_start(&s, from, &base[0]);
     try_starts(&s);
     choose(&s, &place);
@@ -258,8 +258,8 @@ static void find_at(adcgs_track *t, const adcgs_layers *l, int moment, int turns
         try_starts(&s);
         choose(&s, &place);
     }
-    t->known[moment] = (uint8_t)is_good(&place);
-    t->place[moment] = place;
+    t->known[frame] = (uint8_t)is_good(&place);
+    t->place[frame] = place;
 }
 
 adcgs_status adcgs_track_run(adcgs_track *t, const adcgs_layers *l, int start, adcgs_pool *pool, adcgs_error *error)
@@ -288,25 +288,25 @@ adcgs_status adcgs_track_run(adcgs_track *t, const adcgs_layers *l, int start, a
 /* ---- Second pass over the frames ---- */
 
 /** Compares the current pose with the one that continues the motion, and prefers the latter if the images agree about as well. */
-static void look_again(adcgs_track *t, const adcgs_layers *l, int moment, int way)
+static void look_again(adcgs_track *t, const adcgs_layers *l, int frame, int way)
 {
-    const int known[2] = { moment - way, moment - 2 * way };
-    adcgs_placing on, *now = &t->place[moment];
-    if (known[1] < 0 || known[1] >= l->n || !t->known[known[0]] || !t->known[known[1]] || !l->all[moment].n)
+    const int known[2] = { frame - way, frame - 2 * way };
+    adcgs_placement on, *now = &t->place[frame];
+    if (known[1] < 0 || known[1] >= l->n || !t->known[known[0]] || !t->known[known[1]] || !l->all[frame].n)
         return;
     on = t->place[known[0]];
-    adcgs_track_go_on(t, l, moment, known, &on.at);
-    refine(t, l, moment, 0, &on);
+    adcgs_track_extrapolate(t, l, frame, known, &on.at);
+    refine(t, l, frame, 0, &on);
     if (!is_good(&on))
         return;
-    if (t->known[moment])
-        refine(t, l, moment, 1, now);
-    if (!t->known[moment] || score_of(&on) > ABOUT * score_of(now))
+    if (t->known[frame])
+        refine(t, l, frame, 1, now);
+    if (!t->known[frame] || score_of(&on) > ABOUT * score_of(now))
         *now = on;
-    t->known[moment] = 1;
+    t->known[frame] = 1;
 }
 
-void adcgs_track_look_again(adcgs_track *t, const adcgs_layers *l, int start)
+void adcgs_track_rematch(adcgs_track *t, const adcgs_layers *l, int start)
 {
     for (int m = start + 1; m < l->n; m++)
         look_again(t, l, m, 1);
@@ -319,15 +319,15 @@ typedef struct again {
     const adcgs_layers *l;
 } again;
 
-static void refine_one(void *arg, int moment, int thread)
+static void refine_one(void *arg, int frame, int thread)
 {
     const again *a = arg;
-    adcgs_placing *p = &a->t->place[moment];
+    adcgs_placement *p = &a->t->place[frame];
     (void)thread;
-    if (!a->t->known[moment])
+    if (!a->t->known[frame])
         return;
-    refine(a->t, a->l, moment, 1, p);
-    a->t->known[moment] = (uint8_t)is_good(p);
+    refine(a->t, a->l, frame, 1, p);
+    a->t->known[frame] = (uint8_t)is_good(p);
 }
 
 void adcgs_track_refine(adcgs_track *t, const adcgs_layers *l, adcgs_pool *pool)

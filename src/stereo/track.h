@@ -12,7 +12,7 @@
 /** A body and its poses. Zero-initialise before use. */
 typedef struct adcgs_track {
     adcgs_body_model model;
-    adcgs_placing place[ADCGS_MATCHING_FRAMES_MAX];
+    adcgs_placement place[ADCGS_MATCHING_FRAMES_MAX];
     uint8_t known[ADCGS_MATCHING_FRAMES_MAX];
 } adcgs_track;
 
@@ -20,7 +20,7 @@ typedef struct adcgs_track {
 adcgs_status adcgs_track_run(adcgs_track *track, const adcgs_layers *layers, int start, adcgs_pool *pool, adcgs_error *error);
 
 /** Where the track was lost or jumped, tests if the body continued its motion. */
-void adcgs_track_look_again(adcgs_track *track, const adcgs_layers *layers, int start);
+void adcgs_track_rematch(adcgs_track *track, const adcgs_layers *layers, int start);
 
 /** Refines the pose of all frames against the whole body. */
 void adcgs_track_refine(adcgs_track *track, const adcgs_layers *layers, adcgs_pool *pool);
@@ -29,7 +29,8 @@ void adcgs_track_refine(adcgs_track *track, const adcgs_layers *layers, adcgs_po
 double adcgs_track_between(const adcgs_track *track, const adcgs_rigid *a, const adcgs_rigid *b);
 
 /** Extrapolates the motion between two frames with a known pose; known[0] is the nearer one. */
-void adcgs_track_go_on(const adcgs_track *track, const adcgs_layers *layers, int moment, const int known[2], adcgs_rigid *out);
+void adcgs_track_extrapolate(const adcgs_track *track, const adcgs_layers *layers, int frame, const int known[2],
+                             adcgs_rigid *out);
 
 /** Centroid of the body's points in its rest pose. Returns their RMS distance from it. */
 double adcgs_track_centre(const adcgs_track *track, double centre[3]);

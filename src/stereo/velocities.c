@@ -205,7 +205,7 @@ static layer layer_at(adcgs_stereo_point *points, place *sorted, uint32_t n, uin
     return l;
 }
 
-adcgs_status adcgs_stereo_follow(adcgs_stereo_point *points, uint32_t n, adcgs_error *error)
+adcgs_status adcgs_stereo_find_velocities(adcgs_stereo_point *points, uint32_t n, adcgs_error *error)
 {
     scratch s = { adcgs_alloc(NULL, n, sizeof *s.move, error),  adcgs_alloc(NULL, n, sizeof *s.raw, error),
                   adcgs_alloc(NULL, n, 1, error),               adcgs_alloc(NULL, n, 1, error),

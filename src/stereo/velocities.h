@@ -10,6 +10,6 @@
 #include "stereo/stereo.h"
 
 /** Sets the velocities of points [n], ascending in t. Points without a match keep 0. */
-adcgs_status adcgs_stereo_follow(adcgs_stereo_point *points, uint32_t n, adcgs_error *error);
+adcgs_status adcgs_stereo_find_velocities(adcgs_stereo_point *points, uint32_t n, adcgs_error *error);
 
 #endif

@@ -96,14 +96,14 @@ static void say_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adc
                    others(more, "; also", f));
 }
 
-static void say_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_off *poses)
+static void say_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_pose_error *poses)
 {
     adcgs_cli_note(cli, "%s: matched points of cameras lie %.1f pixels apart (median): check poses and lenses",
                    scene->directory, poses->median * poses->pixels);
 }
 
 /** Reports the convention that fits the poses, if it is not the given one. */
-static void say_axes(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_axes_doubt *d)
+static void say_axes(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_axes_check *d)
 {
     static const char *const changes[ADCGS_READINGS] = {"", "y and z of all cameras are flipped", "all poses are inverted",
                                                         "all poses are inverted"};
@@ -116,7 +116,7 @@ static void say_axes(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs
         adcgs_cli_note(cli, "%s: a camera sees %.0f %% of the points, and %.0f %% if %s: check whether "
                             "%s", where, 100.0 * d->here,
                        100.0 * d->there, change, question);
-    else if (d->by == ADCGS_BY_PICTURES)
+    else if (d->by == ADCGS_BY_IMAGES)
         adcgs_cli_note(cli, "%s: the cameras' images contradict each other, but not if %s: check whether "
                             "%s", where, change, question);
     else
@@ -125,7 +125,7 @@ static void say_axes(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs
 }
 
 /** Reports the pose of a single camera. */
-static void say_odd(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_odd *o, double pixels)
+static void say_odd(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_pose_outlier *o, double pixels)
 {
     const char *const path = short_name(scene, scene->views[ADCGS_SPLIT_TRAIN][o->view].path);
     adcgs_cli_note(cli, "%s: its camera disagrees with the others by %.1f pixels (rotation %.1f degrees, translation %.0f %% of "
@@ -137,9 +137,9 @@ static void say_odd(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_
 static void look_at_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_scene *whole, const adcgs_stereo *found,
                           adcgs_pool *pool, unsigned *told)
 {
-    adcgs_axes_doubt doubt;
+    adcgs_axes_check doubt;
     adcgs_error error;
-    if (!(*told & AXES) && adcgs_axes_doubt_find(&doubt, scene, found, pool, &error) == ADCGS_OK &&
+    if (!(*told & AXES) && adcgs_axes_check_run(&doubt, scene, found, pool, &error) == ADCGS_OK &&
         doubt.meant != ADCGS_READ_AS_GIVEN) {
         say_axes(cli, whole, &doubt);
         *told |= POSES;
@@ -149,8 +149,8 @@ static void look_at_poses(const adcgs_cli *cli, const adcgs_scene *scene, const 
         say_poses(cli, whole, &found->poses);
         *told |= POSES;
     }
-    for (int i = 0; i < found->n_odd && !(*told & POSES); i++)
-        say_odd(cli, scene, &found->odd[i], found->poses.pixels);
+    for (int i = 0; i < found->n_outliers && !(*told & POSES); i++)
+        say_odd(cli, scene, &found->outlier[i], found->poses.pixels);
 }
 
 /** Reports faults of the images, each kind once. */

@@ -46,7 +46,7 @@ static int place_of(const adcgs_stereo *found, uint32_t body, double x[3])
 {
     int n = 0;
     x[0] = x[1] = x[2] = 0;
-    for (uint32_t i = 0; i < found->n_moving && found->moving[i].t <= found->moment[0]; i++)
+    for (uint32_t i = 0; i < found->n_moving && found->moving[i].t <= found->frame_time[0]; i++)
         for (int a = 0; found->moving[i].body == body + 1 && a < 3; a++) {
             x[a] += found->moving[i].x[a];
             n += a == 0;
@@ -129,7 +129,7 @@ static void name_bodies(const adcgs_fmodel *f, adcgs_stereo *found, stand *stand
             number[i] = (uint8_t)(b + 1);
             stands[b].found = (int)i + 1;
             if (!fresh)
-                go_on_from(&found->body[i], found->n_moments, &stands[b]);
+                go_on_from(&found->body[i], found->n_frames, &stands[b]);
         }
 }
 

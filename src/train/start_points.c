@@ -15,7 +15,7 @@
 #define MATCHED_SHARE 0.9  /* of the points; the rest are random points where matching found nothing */
 #define MOVING_SHARE 0.25  /* of all points: moving ones; with many more, anchors are too small to find motion */
 #define SPACING_LEAST (1 / 15.0f) /* minimum frame spacing, as share of the clip; bounds the number of lifetimes in a long clip */
-#define FILM_LIVES 2.7f    /* factor of lifetimes for one moving camera: more views then see an anchor */
+#define MONOCULAR_LIFETIMES 2.7f /* factor of lifetimes for one moving camera: more views then see an anchor */
 #define FILM_FAR 0.4       /* camera distances per clip: slower motion is found without lifetimes */
 #define POINTS_LOOKED_AT 1000 /* points tested for visibility in any camera */
 #define MOVING_MOST 2000   /* maximum number per frame for lifetimes */
@@ -215,10 +215,10 @@ static void add_matched(adcgs_start_points *c, const adcgs_stereo *found, const 
 /** The matched frame nearest to the middle of time. */
 static float middle_moment(const adcgs_stereo *s)
 {
-    float best = s->n_moments ? s->moment[0] : 0.5f;
-    for (uint32_t i = 1; i < s->n_moments; i++)
-        if (fabsf(s->moment[i] - 0.5f) < fabsf(best - 0.5f))
-            best = s->moment[i];
+    float best = s->n_frames ? s->frame_time[0] : 0.5f;
+    for (uint32_t i = 1; i < s->n_frames; i++)
+        if (fabsf(s->frame_time[i] - 0.5f) < fabsf(best - 0.5f))
+            best = s->frame_time[i];
     return best;
 }
 
@@ -337,7 +337,8 @@ adcgs_status adcgs_start_points_find(adcgs_start_points *c, const adcgs_scene *s
 
 float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *found)
 {
-    return (found->film ? FILM_LIVES : 1) * config->lifetime_frames * fmaxf(adcgs_stereo_spacing(found), SPACING_LEAST);
+    return (found->monocular ? MONOCULAR_LIFETIMES : 1) * config->lifetime_frames * fmaxf(adcgs_stereo_spacing(found),
+                                                                                          SPACING_LEAST);
 }
 
 /** True if the median moving point moves far, in a scene of one moving camera. */
@@ -386,7 +387,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene
         config->start_anchors = ADCGS_MAX(config->start_anchors, (uint32_t)(START_SHARE * config->max_anchors));
     if (matched && !known) {
         options.still = (uint32_t)(MATCHED_SHARE * config->start_anchors);
-        options.moments = config->matching_frames;
+        options.frames = config->matching_frames;
         options.judges = config->judges_poses;
         options.bodies = config->params.spans ? config->params.bodies : 0;
         options.moving = config->params.spans ? MOVING_MOST : (uint32_t)(MOVING_SHARE * options.still);
@@ -394,7 +395,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene
         ADCGS_TRY(adcgs_stereo_find(found, scene, &options, pool, error));
     }
     set_lives(found, config);
-    if (found->film && !found->n_bodies)
+    if (found->monocular && !found->n_bodies)
         ADCGS_TRY(goes_far(found, &far, error));
     /* All segments of a stream have the same parameters, so a part's parameters cannot depend on its own content. */
     if (config->matching_frames && !(scene->whole ? whole : far && found->n_moving))

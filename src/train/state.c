@@ -156,7 +156,7 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
     ADCGS_TRY(adcgs_plan_anchors(c, t->scene, &t->decisions.details, error));
     ADCGS_TRY(adcgs_rate_plan(c, error));
     ADCGS_TRY(adcgs_scene_frame(t->scene, t->origin, &t->scale, error));
-    ADCGS_TRY(adcgs_start_match(&t->stereo, t->stereo.n_moments > 0, t->scene, c, t->pool, error));
+    ADCGS_TRY(adcgs_start_match(&t->stereo, t->stereo.n_frames > 0, t->scene, c, t->pool, error));
     if (before)
         ADCGS_TRY(follow(t, before, error));
     else

@@ -88,8 +88,8 @@ adcgs_status adcgs_moment_find(adcgs_trainer *t, const adcgs_stereo_point **poin
 {
     const adcgs_stereo *s = &t->stereo;
     *n = 0;
-    for (int turn = 0; turn < MOMENTS && s->n_moments; turn++) {
-        const float moment = s->moment[adcgs_random64(t->config.seed, 4000 + (uint64_t)turn, t->iteration) % s->n_moments];
+    for (int turn = 0; turn < MOMENTS && s->n_frames; turn++) {
+        const float moment = s->frame_time[adcgs_random64(t->config.seed, 4000 + (uint64_t)turn, t->iteration) % s->n_frames];
         batch b = batch_of(s, moment);
         b.gain = adcgs_alloc(NULL, b.n + 1, sizeof *b.gain, error);
         b.seen = adcgs_alloc(NULL, b.n + 1, sizeof *b.seen, error);

@@ -73,7 +73,7 @@ static void add_points(void)
 }
 
 /** Writes the poses in another convention. */
-static void write_otherwise(adcgs_reading reading)
+static void write_otherwise(adcgs_axes_reading reading)
 {
     for (int i = 0; i < CAMERAS; i++) {
         const int turned = reading == ADCGS_READ_TURNED || reading == ADCGS_READ_INVERSE_OPENGL;
@@ -92,10 +92,10 @@ static void write_otherwise(adcgs_reading reading)
 }
 
 /** matched: images are used, too. */
-static adcgs_axes_doubt doubt(int matched)
+static adcgs_axes_check doubt(int matched)
 {
-    adcgs_axes_doubt out;
-    adcgs_stereo found = {.n_moments = 0};
+    adcgs_axes_check out;
+    adcgs_stereo found = {.n_frames = 0};
     if (matched) {
         adcgs_stereo_options options = {.still = 10, .scale = 1.0, .judges = 1};
         int applies;
@@ -104,14 +104,14 @@ static adcgs_axes_doubt doubt(int matched)
         assert_int_equal(adcgs_stereo_find(&found, &scene, &options, NULL, &error), ADCGS_OK);
         print_message("%d pairs, %.2f pixels off\n", found.poses.pairs, found.poses.median);
     }
-    assert_int_equal(adcgs_axes_doubt_find(&out, &scene, &found, NULL, &error), ADCGS_OK);
+    assert_int_equal(adcgs_axes_check_run(&out, &scene, &found, NULL, &error), ADCGS_OK);
     adcgs_stereo_clear(&found);
     return out;
 }
 
-static void expect(adcgs_reading meant, adcgs_witness by, int matched)
+static void expect(adcgs_axes_reading meant, adcgs_axes_evidence by, int matched)
 {
-    const adcgs_axes_doubt d = doubt(matched);
+    const adcgs_axes_check d = doubt(matched);
     assert_int_equal(d.meant, meant);
     if (meant != ADCGS_READ_AS_GIVEN)
         assert_int_equal(d.by, by);
@@ -121,11 +121,11 @@ static void test_around(void **state)
 {
     for (int r = ADCGS_READ_AS_GIVEN; r < ADCGS_READINGS; r++) {
         make_scene(4.0, 120.0);
-        write_otherwise((adcgs_reading)r);
-        expect((adcgs_reading)r, ADCGS_BY_PICTURES, 1);
-        expect((adcgs_reading)r, ADCGS_BY_PLACES, 0);
+        write_otherwise((adcgs_axes_reading)r);
+        expect((adcgs_axes_reading)r, ADCGS_BY_IMAGES, 1);
+        expect((adcgs_axes_reading)r, ADCGS_BY_PLACES, 0);
         add_points();
-        expect((adcgs_reading)r, ADCGS_BY_POINTS, 0);
+        expect((adcgs_axes_reading)r, ADCGS_BY_POINTS, 0);
     }
 }
 
@@ -133,7 +133,7 @@ static void test_around(void **state)
 static void test_room(void **state)
 {
     make_scene(0.4, 300.0);
-    expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_PICTURES, 1);
+    expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_IMAGES, 1);
     expect(ADCGS_READ_TURNED, ADCGS_BY_PLACES, 0);
     add_points();
     expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_POINTS, 0);
@@ -143,10 +143,10 @@ static void test_room(void **state)
 static void test_forward(void **state)
 {
     make_scene(4.0, 20.0);
-    expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_PICTURES, 1);
+    expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_IMAGES, 1);
     expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_PLACES, 0);
     write_otherwise(ADCGS_READ_TURNED);
-    expect(ADCGS_READ_TURNED, ADCGS_BY_PICTURES, 1);
+    expect(ADCGS_READ_TURNED, ADCGS_BY_IMAGES, 1);
     expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_PLACES, 0);
 }
 

@@ -126,7 +126,7 @@ static double angle_about_y(const adcgs_stereo_pose *p)
 
 static void check_turning(const adcgs_stereo *s, const adcgs_stereo_body *b)
 {
-    for (uint32_t m = 1; m < s->n_moments; m++) {
+    for (uint32_t m = 1; m < s->n_frames; m++) {
         const double step = angle_about_y(&b->pose[m]) - angle_about_y(&b->pose[m - 1]);
         const double off = remainder(fabs(step) - 20, 360), tilt = hypot(b->pose[m].q[1], b->pose[m].q[3]) * 2 * 180 / PI;
         print_message("frame %u: rotation %.2f degrees, tilt %.2f degrees\n", m, step, tilt);
@@ -137,7 +137,7 @@ static void check_turning(const adcgs_stereo *s, const adcgs_stereo_body *b)
 
 static void check_sliding(const adcgs_stereo *s, const adcgs_stereo_body *b)
 {
-    for (uint32_t m = 1; m < s->n_moments; m++) {
+    for (uint32_t m = 1; m < s->n_frames; m++) {
         const double *p = b->pose[m].way, *q = b->pose[m - 1].way;
         print_message("frame %u: translation %.4f %.4f %.4f\n", m, p[0] - q[0], p[1] - q[1], p[2] - q[2]);
         assert_true(fabs(p[1] - q[1] - STEP) < 0.005 && fabs(p[0] - q[0]) < 0.005 && fabs(p[2] - q[2]) < 0.015);
@@ -170,7 +170,7 @@ static void boxes_are_followed(void **state)
     assert_true(n[1] >= n[2] && n[1] == s.body[0].n && n[2] == s.body[1].n);
     assert_true(right > 0.98 * (n[1] + n[2]) && n[1] + n[2] > n[0]);
     for (uint32_t b = 0; b < s.n_bodies; b++)
-        for (uint32_t m = 0; m < s.n_moments; m++) {
+        for (uint32_t m = 0; m < s.n_frames; m++) {
             const double *q = s.body[b].pose[m].q, *before = s.body[b].pose[m ? m - 1 : 0].q;
             assert_true(fabs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-9);
             assert_true(q[0] * before[0] + q[1] * before[1] + q[2] * before[2] + q[3] * before[3] > 0);
@@ -187,7 +187,7 @@ static void threads_do_not_show(void **state)
     assert_int_equal(a.n_bodies, b.n_bodies);
     for (uint32_t i = 0; i < a.n_bodies; i++) {
         assert_memory_equal(a.body[i].pivot, b.body[i].pivot, sizeof a.body[i].pivot);
-        assert_memory_equal(a.body[i].pose, b.body[i].pose, a.n_moments * sizeof *a.body[i].pose);
+        assert_memory_equal(a.body[i].pose, b.body[i].pose, a.n_frames * sizeof *a.body[i].pose);
     }
     adcgs_stereo_clear(&b);
     adcgs_pool_free(&pool);

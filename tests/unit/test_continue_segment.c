@@ -260,12 +260,12 @@ static void bodies_are_found_again(void **state)
         adcgs_bodies_set_pose(f, b ? 1 : 3, 0, left.q, zero, left.way);
     }
 
-    adcgs_stereo found = { .n_moments = SEEN, .n_bodies = FOUND, .n_moving = FOUND };
-    found.moment = adcgs_alloc(NULL, SEEN, sizeof *found.moment, &error);
+    adcgs_stereo found = { .n_frames = SEEN, .n_bodies = FOUND, .n_moving = FOUND };
+    found.frame_time = adcgs_alloc(NULL, SEEN, sizeof *found.frame_time, &error);
     found.body = adcgs_alloc(NULL, FOUND, sizeof *found.body, &error);
     found.moving = adcgs_alloc(NULL, FOUND, sizeof *found.moving, &error);
     for (int m = 0; m < SEEN; m++)
-        found.moment[m] = (float)m / (SEEN - 1);
+        found.frame_time[m] = (float)m / (SEEN - 1);
     for (int i = 0; i < FOUND; i++) {
         const int b = i == 0 ? 1 : i == 2 ? 0 : -1; /* the one in the middle is new */
         found.body[i].pose = adcgs_alloc(NULL, SEEN, sizeof *found.body[i].pose, &error);

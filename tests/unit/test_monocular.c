@@ -90,11 +90,11 @@ static void what_moves_is_where_it_is(void **state)
     uint32_t good = 0, first = 0, last;
     double speed = 0;
     (void)state;
-    assert_true(found.n_moments >= 20 && found.n_moving > 1000);
-    for (uint32_t m = 0; m < found.n_moments; m++, first = last) {
+    assert_true(found.n_frames >= 20 && found.n_moving > 1000);
+    for (uint32_t m = 0; m < found.n_frames; m++, first = last) {
         double sum[3] = { 0, 0, 0 }, x[3], off = 0;
         uint32_t n = 0;
-        for (last = first; last < found.n_moving && found.moving[last].t <= found.moment[m]; last++) {
+        for (last = first; last < found.n_moving && found.moving[last].t <= found.frame_time[m]; last++) {
             to_world(found.moving[last].x, x);
             for (int a = 0; a < 3; a++)
                 sum[a] += x[a];
@@ -102,11 +102,11 @@ static void what_moves_is_where_it_is(void **state)
             n++;
         }
         for (int a = 0; a < 3; a++)
-            off = fmax(off, fabs(sum[a] / fmax(n, 1) - begin[a] - (a ? 0 : CROSSES * (double)found.moment[m])));
+            off = fmax(off, fabs(sum[a] / fmax(n, 1) - begin[a] - (a ? 0 : CROSSES * (double)found.frame_time[m])));
         good += n >= 100 && off < 0.4;
     }
     assert_int_equal(first, found.n_moving);
-    assert_true(good >= found.n_moments * 3 / 4);
+    assert_true(good >= found.n_frames * 3 / 4);
     assert_true(fabs(speed / found.n_moving - CROSSES) < 0.4 * CROSSES);
 }
 

@@ -49,8 +49,8 @@ static void look(adcgs_stereo_camera *c, adcgs_depths *d)
             w[a] = v->rotation[a] * p[0] + v->rotation[3 + a] * p[1] + v->rotation[6 + a] * p[2];
         const double away = ball_hit(v->centre, w, x);
         for (uint32_t k = 0; k < 3; k++)
-            c->usual[4 * i + (int)k] = away > 0.0 ? (float)ball_shows(x, k) : 0.5f;
-        c->usual[4 * i + 3] = 1;
+            c->background[4 * i + (int)k] = away > 0.0 ? (float)ball_shows(x, k) : 0.5f;
+        c->background[4 * i + 3] = 1;
         d->inverse[i] = (float)(1.0 / fmax(away, 0.1));
         d->quality[i] = away > 0.0 ? ADCGS_DEPTH_STRONG : ADCGS_DEPTH_NONE;
     }
@@ -62,14 +62,14 @@ static int make_rig(void **state)
     rig.n_cameras = CAMERAS;
     for (int i = 0; i < CAMERAS; i++) {
         adcgs_stereo_camera *const c = &rig.camera[i];
-        c->usual = adcgs_alloc(NULL, 4 * PIXELS, sizeof *c->usual, &error);
-        c->changes = adcgs_alloc(NULL, PIXELS, 1, &error);
+        c->background = adcgs_alloc(NULL, 4 * PIXELS, sizeof *c->background, &error);
+        c->unstable = adcgs_alloc(NULL, PIXELS, 1, &error);
         depths[i] = (adcgs_depths){ .view = &c->view, .w = SIDE, .h = SIDE, .step = 0.001 };
         depths[i].inverse = adcgs_alloc(NULL, PIXELS, sizeof *depths[i].inverse, &error);
         depths[i].quality = adcgs_alloc(NULL, PIXELS, 1, &error);
-        if (!c->usual || !c->changes || !depths[i].inverse || !depths[i].quality)
+        if (!c->background || !c->unstable || !depths[i].inverse || !depths[i].quality)
             return -1;
-        c->view.pixels = c->usual;
+        c->view.pixels = c->background;
         c->first = 100 + (uint32_t)i;
         set_view(&c->view, i);
         look(c, &depths[i]);
@@ -111,13 +111,13 @@ static void exchange(int i, int k)
 /** Runs the check and restores all cameras. */
 static adcgs_stereo ask(void)
 {
-    adcgs_stereo out = { .n_odd = 0 };
-    assert_int_equal(adcgs_stereo_find_odd(&out, &rig, depths, NULL, &error), ADCGS_OK);
+    adcgs_stereo out = { .n_outliers = 0 };
+    assert_int_equal(adcgs_stereo_find_pose_outliers(&out, &rig, depths, NULL, &error), ADCGS_OK);
     for (int i = 0; i < CAMERAS; i++)
         set_view(&rig.camera[i].view, i);
-    for (int i = 0; i < out.n_odd; i++)
+    for (int i = 0; i < out.n_outliers; i++)
         print_message("view %u: off by %.2f pixels, rotation %.2f degrees, translation %.3f of the distance\n",
-                      out.odd[i].view, out.odd[i].off, out.odd[i].turned, out.odd[i].moved);
+                      out.outlier[i].view, out.outlier[i].off, out.outlier[i].turned, out.outlier[i].moved);
     return out;
 }
 
@@ -125,11 +125,11 @@ static adcgs_stereo ask(void)
 static void expect_one(double pixels, double degrees, double share)
 {
     const adcgs_stereo out = ask();
-    assert_int_equal(out.n_odd, 1);
-    assert_int_equal(out.odd[0].view, 100 + ODD);
-    assert_true(fabs(out.odd[0].off - pixels) < 0.15 * pixels);
-    assert_true(fabs(out.odd[0].turned - degrees) < 0.5 + 0.4 * degrees); /* small translations and rotations look alike */
-    assert_true(fabs(out.odd[0].moved - share) < 0.05 + 0.1 * share);
+    assert_int_equal(out.n_outliers, 1);
+    assert_int_equal(out.outlier[0].view, 100 + ODD);
+    assert_true(fabs(out.outlier[0].off - pixels) < 0.15 * pixels);
+    assert_true(fabs(out.outlier[0].turned - degrees) < 0.5 + 0.4 * degrees); /* small translations and rotations look alike */
+    assert_true(fabs(out.outlier[0].moved - share) < 0.05 + 0.1 * share);
 }
 
 static void test_one(void **state)
@@ -153,8 +153,8 @@ static void test_two(void **state)
     for (int k = 0; k < CAMERAS; k += 6) {
         exchange(ODD, k);
         const adcgs_stereo out = ask();
-        assert_int_equal(out.n_odd, 2);
-        assert_int_equal(out.odd[0].view + out.odd[1].view, 200 + ODD + k);
+        assert_int_equal(out.n_outliers, 2);
+        assert_int_equal(out.outlier[0].view + out.outlier[1].view, 200 + ODD + k);
     }
 }
 
@@ -164,22 +164,22 @@ static void test_lens(void **state)
     rig.camera[ODD].view.fx *= 1.1;
     rig.camera[ODD].view.fy *= 1.1;
     const adcgs_stereo out = ask();
-    assert_int_equal(out.n_odd, 1);
-    assert_int_equal(out.odd[0].view, 100 + ODD);
+    assert_int_equal(out.n_outliers, 1);
+    assert_int_equal(out.outlier[0].view, 100 + ODD);
 }
 
 static void test_nothing(void **state)
 {
     (void)state;
-    assert_int_equal(ask().n_odd, 0);
+    assert_int_equal(ask().n_outliers, 0);
     for (int i = 0; i < CAMERAS; i++) /* then no single camera is an outlier */
         turn(i, i % 2, i % 3 - 1.0);
-    assert_int_equal(ask().n_odd, 0);
+    assert_int_equal(ask().n_outliers, 0);
     turn(ODD, 1, 0.05); /* a sixth of a pixel */
-    assert_int_equal(ask().n_odd, 0);
+    assert_int_equal(ask().n_outliers, 0);
     turn(2, 1, 5.0);
     rig.n_cameras = 4; /* too few cameras to decide which is right */
-    assert_int_equal(ask().n_odd, 0);
+    assert_int_equal(ask().n_outliers, 0);
     rig.n_cameras = CAMERAS;
 }
 

@@ -44,7 +44,7 @@ static void what_moves_is_the_square(void **state)
 {
     const adcgs_stereo s = found;
     uint32_t off = 0, fast = 0, n = 0, astray = 0, seen = 0;
-    assert_int_equal(s.n_moments, MOMENTS);
+    assert_int_equal(s.n_frames, MOMENTS);
     assert_true(s.n_moving > MOMENTS * options.moving / 3 && s.n_moving <= MOMENTS * options.moving);
     for (uint32_t i = 0; i < s.n_moving; i++) {
         const adcgs_stereo_point *p = &s.moving[i];

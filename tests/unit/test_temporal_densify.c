@@ -236,7 +236,7 @@ static void one_moment_does_not_overflow(void **state)
     assert_non_null(points);
     for (int i = 0; i < MANY; i++)
         points[i] = (adcgs_stereo_point){ .x = { 0.001 * i, 0, SQUARE }, .t = 0.5f, .size = 0.01f, .moves = 1 };
-    const adcgs_stereo many = { .n_moving = MANY, .moving = points, .n_moments = 3, .moment = moment };
+    const adcgs_stereo many = { .n_moving = MANY, .moving = points, .n_frames = 3, .frame_time = moment };
     config.params.spans = 0;
     if (adcgs_start_points_find(&start, &scene, &config, &many, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
