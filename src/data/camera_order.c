@@ -24,7 +24,7 @@ static int by_time(const void *a, const void *b)
 }
 
 /** All views as one track, if no two have the same time. */
-static adcgs_status find_moving(adcgs_tracks *tracks, const adcgs_scene_view *views, uint32_t n, adcgs_error *error)
+static adcgs_status find_moving(adcgs_camera_order *tracks, const adcgs_scene_view *views, uint32_t n, adcgs_error *error)
 {
     item *const items = adcgs_alloc(NULL, n, sizeof *items, error);
     if (!items)
@@ -44,10 +44,10 @@ static adcgs_status find_moving(adcgs_tracks *tracks, const adcgs_scene_view *vi
     return ADCGS_OK;
 }
 
-static adcgs_status find(adcgs_tracks *tracks, const adcgs_scene_view *views, uint32_t n, uint32_t *of, adcgs_error *error)
+static adcgs_status find(adcgs_camera_order *tracks, const adcgs_scene_view *views, uint32_t n, uint32_t *of, adcgs_error *error)
 {
     uint32_t cameras;
-    ADCGS_TRY(adcgs_sort_by_camera(views, n, of, tracks->order, &cameras, error));
+    ADCGS_TRY(adcgs_group_views(views, n, of, tracks->order, &cameras, error));
     if (n < STAY * cameras)
         return find_moving(tracks, views, n, error);
     tracks->n = cameras;
@@ -56,23 +56,23 @@ static adcgs_status find(adcgs_tracks *tracks, const adcgs_scene_view *views, ui
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_tracks_find(adcgs_tracks *tracks, const adcgs_scene_view *views, uint32_t n, adcgs_error *error)
+adcgs_status adcgs_camera_order_find(adcgs_camera_order *tracks, const adcgs_scene_view *views, uint32_t n, adcgs_error *error)
 {
     uint32_t *const of = adcgs_alloc(NULL, n + 1, sizeof *of, error);
-    *tracks = (adcgs_tracks){.begin = adcgs_alloc(NULL, (size_t)n + 2, sizeof *tracks->begin, error),
-                             .order = adcgs_alloc(NULL, (size_t)n + 1, sizeof *tracks->order, error)};
+    *tracks = (adcgs_camera_order){.begin = adcgs_alloc(NULL, (size_t)n + 2, sizeof *tracks->begin, error),
+                                   .order = adcgs_alloc(NULL, (size_t)n + 1, sizeof *tracks->order, error)};
     adcgs_status status = of && tracks->begin && tracks->order ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK && n)
         status = find(tracks, views, n, of, error);
     adcgs_free(NULL, of);
     if (status != ADCGS_OK)
-        adcgs_tracks_clear(tracks);
+        adcgs_camera_order_clear(tracks);
     return status;
 }
 
-void adcgs_tracks_clear(adcgs_tracks *tracks)
+void adcgs_camera_order_clear(adcgs_camera_order *tracks)
 {
     adcgs_free(NULL, tracks->begin);
     adcgs_free(NULL, tracks->order);
-    *tracks = (adcgs_tracks){.n = 0};
+    *tracks = (adcgs_camera_order){.n = 0};
 }

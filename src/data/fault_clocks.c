@@ -201,7 +201,8 @@ static void take_times(signals *s, const adcgs_scene_view *views, uint32_t n)
 }
 
 /** Computes the signals of the cameras that have enough strong changes, and sets s->cameras to their number. */
-static void take_signals(signals *s, const adcgs_tracks *tracks, const adcgs_scene_view *views, const adcgs_glance *glances)
+static void take_signals(signals *s, const adcgs_camera_order *tracks, const adcgs_scene_view *views,
+                         const adcgs_thumbnail *thumbnails)
 {
     for (uint32_t c = 0; c < tracks->n; c++) {
         double *const values = s->values + (size_t)s->cameras * s->steps;
@@ -211,15 +212,15 @@ static void take_signals(signals *s, const adcgs_tracks *tracks, const adcgs_sce
         for (uint32_t i = 1; i < n; i++) {
             const uint32_t at = find_moment(s, views[order[i]].time);
             if (at && find_moment(s, views[order[i - 1]].time) == at - 1)
-                values[at - 1] = adcgs_glance_difference(&glances[order[i - 1]], &glances[order[i]]);
+                values[at - 1] = adcgs_thumbnail_difference(&thumbnails[order[i - 1]], &thumbnails[order[i]]);
         }
         s->first[s->cameras] = &views[order[0]];
         s->cameras += (uint32_t)sharpen(values, s->steps, s->mean);
     }
 }
 
-static adcgs_status look(adcgs_fault *f, signals *s, const adcgs_tracks *tracks, const adcgs_scene_view *views,
-                         const adcgs_glance *glances, adcgs_error *error)
+static adcgs_status look(adcgs_fault *f, signals *s, const adcgs_camera_order *tracks, const adcgs_scene_view *views,
+                         const adcgs_thumbnail *thumbnails, adcgs_error *error)
 {
     double *const agreed = adcgs_alloc(NULL, tracks->n, sizeof *agreed, error);
     s->values = adcgs_alloc(NULL, (size_t)tracks->n * s->steps, sizeof *s->values, error);
@@ -227,7 +228,7 @@ static adcgs_status look(adcgs_fault *f, signals *s, const adcgs_tracks *tracks,
     s->first = adcgs_alloc(NULL, tracks->n, sizeof *s->first, error);
     const adcgs_status status = agreed && s->values && s->mean && s->first ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK)
-        take_signals(s, tracks, views, glances);
+        take_signals(s, tracks, views, thumbnails);
     f->of = s->cameras;
     if (status == ADCGS_OK && s->cameras >= CAMERAS)
         judge(f, s, agreed);
@@ -238,8 +239,8 @@ static adcgs_status look(adcgs_fault *f, signals *s, const adcgs_tracks *tracks,
     return status;
 }
 
-adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
-                                const adcgs_glance *glances, adcgs_error *error)
+adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_camera_order *tracks,
+                                const adcgs_thumbnail *thumbnails, adcgs_error *error)
 {
     *fault = (adcgs_fault){.cameras = 0};
     if (tracks->n < CAMERAS)
@@ -250,7 +251,7 @@ adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene_view *view
     if (status == ADCGS_OK)
         take_times(&s, views, n);
     if (status == ADCGS_OK && s.steps >= MOMENTS)
-        status = look(fault, &s, tracks, views, glances, error);
+        status = look(fault, &s, tracks, views, thumbnails, error);
     adcgs_free(NULL, s.times);
     return status;
 }

@@ -30,37 +30,38 @@ static int by_time(const void *a, const void *b)
 }
 
 /** Mean absolute distance of the cells from their mean. */
-static double contrast(const adcgs_glance *glance)
+static double contrast(const adcgs_thumbnail *thumbnail)
 {
     double sum = 0.0, distance = 0.0;
     int n = 0;
-    for (int i = 0; i < ADCGS_GLANCE_CELLS; i++)
-        if (!isnan(glance->cells[i])) {
-            sum += (double)glance->cells[i];
+    for (int i = 0; i < ADCGS_THUMBNAIL_CELLS; i++)
+        if (!isnan(thumbnail->cells[i])) {
+            sum += (double)thumbnail->cells[i];
             n++;
         }
-    for (int i = 0; i < ADCGS_GLANCE_CELLS; i++)
-        if (!isnan(glance->cells[i]))
-            distance += fabs((double)glance->cells[i] - sum / n);
+    for (int i = 0; i < ADCGS_THUMBNAIL_CELLS; i++)
+        if (!isnan(thumbnail->cells[i]))
+            distance += fabs((double)thumbnail->cells[i] - sum / n);
     return n ? distance / n : 0.0;
 }
 
 /** True if b is a copy of a. The comparisons are written so that unknown values (NaN) yield false. */
-static int is_copy(const adcgs_glance *glances, const shot *a, const shot *b)
+static int is_copy(const adcgs_thumbnail *thumbnails, const shot *a, const shot *b)
 {
-    const adcgs_glance *const it = &glances[b->view];
-    const double off = fmin(adcgs_glance_difference(it, &glances[b->near[0]]), adcgs_glance_difference(it, &glances[b->near[1]]));
-    if (!(off > 0.0 && adcgs_glance_difference(&glances[a->view], it) <= SAME * off))
+    const adcgs_thumbnail *const it = &thumbnails[b->view];
+    const double off = fmin(adcgs_thumbnail_difference(it, &thumbnails[b->near[0]]),
+                            adcgs_thumbnail_difference(it, &thumbnails[b->near[1]]));
+    if (!(off > 0.0 && adcgs_thumbnail_difference(&thumbnails[a->view], it) <= SAME * off))
         return 0;
     for (int i = 0; i < 2; i++)
-        if (!(adcgs_glance_difference(&glances[a->near[i]], &glances[b->near[i]]) >= OTHER * off &&
-              contrast(it) >= CONTRAST * contrast(&glances[b->near[i]])))
+        if (!(adcgs_thumbnail_difference(&thumbnails[a->near[i]], &thumbnails[b->near[i]]) >= OTHER * off &&
+              contrast(it) >= CONTRAST * contrast(&thumbnails[b->near[i]])))
             return 0;
     return 1;
 }
 
 /** Lists the views of cameras with enough images, and returns their number. */
-static uint32_t take_shots(shot *shots, adcgs_fault *f, const adcgs_scene_view *views, const adcgs_tracks *tracks)
+static uint32_t take_shots(shot *shots, adcgs_fault *f, const adcgs_scene_view *views, const adcgs_camera_order *tracks)
 {
     uint32_t count = 0;
     for (uint32_t c = 0; c < tracks->n; c++) {
@@ -75,11 +76,11 @@ static uint32_t take_shots(shot *shots, adcgs_fault *f, const adcgs_scene_view *
 }
 
 /** counts: [cameras], zero on entry. */
-static void look(adcgs_fault *f, const adcgs_scene_view *views, const shot *shots, uint32_t n, const adcgs_glance *glances,
+static void look(adcgs_fault *f, const adcgs_scene_view *views, const shot *shots, uint32_t n, const adcgs_thumbnail *thumbnails,
                  uint32_t *counts)
 {
     for (uint32_t i = 1; i < n; i++) {
-        if (shots[i].camera == shots[i - 1].camera || !is_copy(glances, &shots[i - 1], &shots[i]))
+        if (shots[i].camera == shots[i - 1].camera || !is_copy(thumbnails, &shots[i - 1], &shots[i]))
             continue;
         if (!f->size++) {
             f->path = views[shots[i].view].path;
@@ -90,8 +91,8 @@ static void look(adcgs_fault *f, const adcgs_scene_view *views, const shot *shot
     }
 }
 
-adcgs_status adcgs_fault_copied(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
-                                const adcgs_glance *glances, adcgs_error *error)
+adcgs_status adcgs_fault_copied(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_camera_order *tracks,
+                                const adcgs_thumbnail *thumbnails, adcgs_error *error)
 {
     *fault = (adcgs_fault){.cameras = 0};
     if (tracks->n < 2)
@@ -100,7 +101,7 @@ adcgs_status adcgs_fault_copied(adcgs_fault *fault, const adcgs_scene_view *view
     uint32_t *const counts = adcgs_alloc(NULL, tracks->n, sizeof *counts, error);
     const adcgs_status status = shots && counts ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK)
-        look(fault, views, shots, take_shots(shots, fault, views, tracks), glances, counts);
+        look(fault, views, shots, take_shots(shots, fault, views, tracks), thumbnails, counts);
     adcgs_free(NULL, shots);
     adcgs_free(NULL, counts);
     return status;

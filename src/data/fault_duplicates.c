@@ -13,29 +13,30 @@
 #define FEW 6      /* least number of images of a camera; fewer are not judged */
 
 /** Number of duplicates of image i > 0, up to the next image that differs; 0 if there are none or motion only pauses. */
-static uint32_t copies_of(const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint32_t i)
+static uint32_t copies_of(const adcgs_thumbnail *thumbnails, const uint32_t *order, uint32_t n, uint32_t i)
 {
-    const adcgs_glance *const before = &glances[order[i - 1]], *const it = &glances[order[i]];
-    const double change = adcgs_glance_difference(before, it);
+    const adcgs_thumbnail *const before = &thumbnails[order[i - 1]], *const it = &thumbnails[order[i]];
+    const double change = adcgs_thumbnail_difference(before, it);
     double inside = 0.0, next = 0.0;
     uint32_t copies = 0;
     for (; i + copies + 1 < n && copies <= COPIES; copies++) {
-        next = adcgs_glance_difference(&glances[order[i + copies]], &glances[order[i + copies + 1]]);
+        next = adcgs_thumbnail_difference(&thumbnails[order[i + copies]], &thumbnails[order[i + copies + 1]]);
         if (!(next <= SAME * change))
             break;
         inside = fmax(inside, next);
     }
     if (!copies || copies > COPIES || i + copies + 1 >= n || !(change > 0.0 && inside <= SAME * next))
         return 0;
-    return adcgs_glance_difference(before, &glances[order[i + copies + 1]]) >= ONWARDS * fmax(change, next) ? copies : 0;
+    return adcgs_thumbnail_difference(before, &thumbnails[order[i + copies + 1]]) >= ONWARDS * fmax(change, next) ? copies : 0;
 }
 
-/** Number of duplicates of one camera; *first becomes the first of them. shows: as in adcgs_fault_doubled(). */
-static uint32_t count_copies(const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint32_t *first, uint32_t *shows)
+/** Number of duplicates of one camera; *first becomes the first of them. shows: as in adcgs_fault_duplicates(). */
+static uint32_t count_copies(const adcgs_thumbnail *thumbnails, const uint32_t *order, uint32_t n, uint32_t *first,
+                             uint32_t *shows)
 {
     uint32_t count = 0, pictures = 0;
     for (uint32_t i = 1; i + 2 < n; i++) {
-        const uint32_t copies = copies_of(glances, order, n, i);
+        const uint32_t copies = copies_of(thumbnails, order, n, i);
         *first = copies && !count ? order[i + 1] : *first;
         pictures += copies > 0;
         for (uint32_t k = 1; shows && k <= copies; k++)
@@ -46,8 +47,8 @@ static uint32_t count_copies(const adcgs_glance *glances, const uint32_t *order,
     return pictures >= PICTURES ? count : 0;
 }
 
-void adcgs_fault_doubled(adcgs_fault *fault, uint32_t *shows, const adcgs_scene_view *views, const adcgs_tracks *tracks,
-                         const adcgs_glance *glances)
+void adcgs_fault_duplicates(adcgs_fault *fault, uint32_t *shows, const adcgs_scene_view *views, const adcgs_camera_order *tracks,
+                            const adcgs_thumbnail *thumbnails)
 {
     *fault = (adcgs_fault){.cameras = 0};
     for (uint32_t c = 0; c < tracks->n; c++) {
@@ -56,9 +57,9 @@ void adcgs_fault_doubled(adcgs_fault *fault, uint32_t *shows, const adcgs_scene_
         if (n < FEW)
             continue;
         const uint32_t *const order = tracks->order + tracks->begin[c];
-        const uint32_t count = count_copies(glances, order, n, &first, NULL);
+        const uint32_t count = count_copies(thumbnails, order, n, &first, NULL);
         if (count && shows)
-            count_copies(glances, order, n, &first, shows);
+            count_copies(thumbnails, order, n, &first, shows);
         fault->of++;
         fault->cameras += count > 0;
         fault->size += count;

@@ -65,7 +65,7 @@ static double widest(const space *s, uint32_t n, double step_of, double least, u
 }
 
 /** Lowers *least_step to the smallest of the cameras' median steps. */
-static void look_at_cameras(adcgs_fault *f, const adcgs_scene_view *views, const adcgs_tracks *tracks, space *s,
+static void look_at_cameras(adcgs_fault *f, const adcgs_scene_view *views, const adcgs_camera_order *tracks, space *s,
                             double *least_step)
 {
     double worst = 0.0, median;
@@ -116,7 +116,7 @@ static void look_at_moments(adcgs_fault *f, const adcgs_scene_view *views, uint3
 }
 
 /** True if one of the cameras took the view. */
-static int is_known(const adcgs_scene_view *views, const adcgs_tracks *tracks, const adcgs_scene_view *view)
+static int is_known(const adcgs_scene_view *views, const adcgs_camera_order *tracks, const adcgs_scene_view *view)
 {
     int known = 0;
     for (uint32_t c = 0; c < tracks->n && !known; c++)
@@ -130,31 +130,31 @@ static int is_known(const adcgs_scene_view *views, const adcgs_tracks *tracks, c
  */
 static adcgs_status gather(const adcgs_scene *scene, adcgs_scene_view *views, uint32_t *n, space *s, adcgs_error *error)
 {
-    adcgs_tracks tracks;
+    adcgs_camera_order tracks;
     *n = scene->n_views[ADCGS_SPLIT_TRAIN];
     memcpy(views, scene->views[ADCGS_SPLIT_TRAIN], *n * sizeof *views);
-    ADCGS_TRY(adcgs_tracks_find(&tracks, views, *n, error));
+    ADCGS_TRY(adcgs_camera_order_find(&tracks, views, *n, error));
     for (int split = ADCGS_SPLIT_TRAIN + 1; split < ADCGS_SPLITS; split++)
         for (uint32_t i = 0; i < scene->n_views[split]; i++)
             if (tracks.moves)
                 s->aside[s->n_aside++] = scene->views[split][i].time;
             else if (is_known(views, &tracks, &scene->views[split][i]))
                 views[(*n)++] = scene->views[split][i];
-    adcgs_tracks_clear(&tracks);
+    adcgs_camera_order_clear(&tracks);
     return ADCGS_OK;
 }
 
 static adcgs_status look(adcgs_fault *f, const adcgs_scene *scene, adcgs_scene_view *views, space *s, adcgs_error *error)
 {
-    adcgs_tracks tracks;
+    adcgs_camera_order tracks;
     uint32_t n;
     double least_step = HUGE_VAL;
     ADCGS_TRY(gather(scene, views, &n, s, error));
-    ADCGS_TRY(adcgs_tracks_find(&tracks, views, n, error));
+    ADCGS_TRY(adcgs_camera_order_find(&tracks, views, n, error));
     look_at_cameras(f, views, &tracks, s, &least_step);
     if (tracks.n > 1)
         look_at_moments(f, views, n, tracks.n, s, least_step);
-    adcgs_tracks_clear(&tracks);
+    adcgs_camera_order_clear(&tracks);
     return ADCGS_OK;
 }
 

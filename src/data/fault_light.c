@@ -22,23 +22,23 @@ typedef struct step {
 } step;
 
 /** The step of light from one image to the next, 0 if the change is no such step; *any is the change in any case. */
-static double step_between(const adcgs_glance *a, const adcgs_glance *b, adcgs_glance_light light, double *any)
+static double step_between(const adcgs_thumbnail *a, const adcgs_thumbnail *b, adcgs_thumbnail_light light, double *any)
 {
     double spread;
-    *any = adcgs_glance_compare(a, b, light, &spread);
+    *any = adcgs_thumbnail_compare(a, b, light, &spread);
     return fabs(*any) >= STEP && spread <= SPREAD * fabs(*any) ? *any : 0.0;
 }
 
 /** The largest step of one camera. A flash is a step and a step back. behind: [views], views behind a step become 1; or NULL. */
-static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances, const uint32_t *order, uint32_t n,
-                      adcgs_glance_light light, uint8_t *behind)
+static step find_step(const adcgs_scene_view *views, const adcgs_thumbnail *thumbnails, const uint32_t *order, uint32_t n,
+                      adcgs_thumbnail_light light, uint8_t *behind)
 {
     step out = {.size = 0.0};
     double before = 0.0, at = 0.0, after = 0.0, next;
-    (void)step_between(&glances[order[0]], &glances[order[1]], light, &before);
-    double size = step_between(&glances[order[1]], &glances[order[2]], light, &at);
+    (void)step_between(&thumbnails[order[0]], &thumbnails[order[1]], light, &before);
+    double size = step_between(&thumbnails[order[1]], &thumbnails[order[2]], light, &at);
     for (uint32_t i = 1; i + 2 < n; i++, before = at, at = after, size = next) {
-        next = step_between(&glances[order[i + 1]], &glances[order[i + 2]], light, &after);
+        next = step_between(&thumbnails[order[i + 1]], &thumbnails[order[i + 2]], light, &after);
         const double back = fmin(fabs(after), fabs(after + at));
         if (!(fabs(size) > 0.0 && fabs(before) <= ALONE * fabs(size) && back <= ALONE * fabs(size)))
             continue;
@@ -82,19 +82,19 @@ static void judge(adcgs_fault *f, const adcgs_scene_view *views, const step *ste
     }
 }
 
-adcgs_status adcgs_fault_light(adcgs_fault *fault, uint8_t *behind, const adcgs_scene_view *views, const adcgs_tracks *tracks,
-                               const adcgs_glance *glances, adcgs_error *error)
+adcgs_status adcgs_fault_light(adcgs_fault *fault, uint8_t *behind, const adcgs_scene_view *views,
+                               const adcgs_camera_order *tracks, const adcgs_thumbnail *thumbnails, adcgs_error *error)
 {
     step *const steps = adcgs_alloc(NULL, (size_t)tracks->n + 1, sizeof *steps, error);
     *fault = (adcgs_fault){.cameras = 0};
     if (!steps)
         return adcgs_alloc_status(error);
     for (int light = 0; light < ADCGS_LIGHTS; light++) { /* the largest step decides: redder images may also be brighter */
-        adcgs_fault found = {.light = (adcgs_glance_light)light};
+        adcgs_fault found = {.light = (adcgs_thumbnail_light)light};
         for (uint32_t c = 0; c < tracks->n; c++) {
             const uint32_t n = tracks->begin[c + 1] - tracks->begin[c];
             if (n >= FEW)
-                steps[found.of++] = find_step(views, glances, tracks->order + tracks->begin[c], n, found.light, behind);
+                steps[found.of++] = find_step(views, thumbnails, tracks->order + tracks->begin[c], n, found.light, behind);
         }
         judge(&found, views, steps, found.of);
         if (!light || fabs(found.size) > fabs(fault->size))

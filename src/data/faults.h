@@ -17,7 +17,7 @@ typedef struct adcgs_fault {
     uint32_t count;               /**< occurrences in this camera */
     double from, to;              /**< times of the worst occurrence */
     double size;                  /**< severity of the worst occurrence; see the functions */
-    adcgs_glance_light light;     /**< kind of change, for a step of light */
+    adcgs_thumbnail_light light;  /**< kind of change, for a step of light */
 } adcgs_fault;
 
 /**
@@ -28,30 +28,30 @@ adcgs_status adcgs_fault_gaps(adcgs_fault *fault, const adcgs_scene *scene, adcg
 
 /**
  * Finds duplicate frames: images that repeat the previous image of their camera, while the images around them differ. tracks,
- * glances: of these views, here and below. count and path: of the camera with most duplicates; size: their total over all
+ * thumbnails: of these views, here and below. count and path: of the camera with most duplicates; size: their total over all
  * cameras. shows: [views], or NULL; for each duplicate, its entry becomes the view that it repeats. Other entries are
  * unchanged.
  */
-void adcgs_fault_doubled(adcgs_fault *fault, uint32_t *shows, const adcgs_scene_view *views, const adcgs_tracks *tracks,
-                         const adcgs_glance *glances);
+void adcgs_fault_duplicates(adcgs_fault *fault, uint32_t *shows, const adcgs_scene_view *views, const adcgs_camera_order *tracks,
+                            const adcgs_thumbnail *thumbnails);
 
 /**
  * Finds images that repeat the previous image in time, which another camera took, while other images of both cameras differ.
  * path: the first copy; count: the most copies in one camera; size: their total. A single camera is never reported.
  */
-adcgs_status adcgs_fault_copied(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
-                                const adcgs_glance *glances, adcgs_error *error);
+adcgs_status adcgs_fault_copied(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_camera_order *tracks,
+                                const adcgs_thumbnail *thumbnails, adcgs_error *error);
 
 /**
  * Finds steps of light: from one time on, or at one time, all images of a camera are brighter or darker, or redder or bluer, by
  * one factor. size: the factor. cameras: those with a step at the same time. behind: [views], or NULL; views behind any step of
  * their camera become 1, at both ends of a flash. Other entries are unchanged.
  */
-adcgs_status adcgs_fault_light(adcgs_fault *fault, uint8_t *behind, const adcgs_scene_view *views, const adcgs_tracks *tracks,
-                               const adcgs_glance *glances, adcgs_error *error);
+adcgs_status adcgs_fault_light(adcgs_fault *fault, uint8_t *behind, const adcgs_scene_view *views,
+                               const adcgs_camera_order *tracks, const adcgs_thumbnail *thumbnails, adcgs_error *error);
 
 /** Finds a camera whose changes match those of all other cameras, but at other times. size: seconds by which it is late. */
-adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
-                                const adcgs_glance *glances, adcgs_error *error);
+adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_camera_order *tracks,
+                                const adcgs_thumbnail *thumbnails, adcgs_error *error);
 
 #endif

@@ -45,8 +45,8 @@ static int by_first_and_time(const void *a, const void *b)
     return compare_index(x, y);
 }
 
-adcgs_status adcgs_sort_by_camera(const adcgs_scene_view *views, uint32_t n, uint32_t *of, uint32_t *order, uint32_t *n_cameras,
-                                  adcgs_error *error)
+adcgs_status adcgs_group_views(const adcgs_scene_view *views, uint32_t n, uint32_t *of, uint32_t *order, uint32_t *n_cameras,
+                               adcgs_error *error)
 {
     item *items = adcgs_alloc(NULL, n, sizeof *items, error);
     if (!items)

@@ -14,7 +14,7 @@ int adcgs_camera_compare(const adcgs_camera *a, const adcgs_camera *b);
  * order: [n] indices of the views, camera by camera, each in ascending time (for equal times in ascending index); may be NULL.
  * *n_cameras: the number of cameras; 0 without views.
  */
-adcgs_status adcgs_sort_by_camera(const adcgs_scene_view *views, uint32_t n, uint32_t *of, uint32_t *order, uint32_t *n_cameras,
-                                  adcgs_error *error);
+adcgs_status adcgs_group_views(const adcgs_scene_view *views, uint32_t n, uint32_t *of, uint32_t *order, uint32_t *n_cameras,
+                               adcgs_error *error);
 
 #endif

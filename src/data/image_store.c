@@ -27,9 +27,9 @@ typedef struct picture {
     uint8_t *hidden; /**< [height * width] pixels that are unknown; values holds 0 for them; NULL: none */
 } picture;
 
-struct adcgs_pictures {
+struct adcgs_image_store {
     const adcgs_scene *scene;
-    adcgs_pictures_config config;
+    adcgs_image_store_config config;
     uint32_t n;
     picture *list;
     pthread_mutex_t lock; /**< protects the members below, while loading */
@@ -120,7 +120,7 @@ static void show_hidden(const picture *p, float *rgb)
 /* ---- Loading ---- */
 
 /** Decides where an image is kept. */
-static void find_place(adcgs_pictures *p, picture *to, int can_decode)
+static void find_place(adcgs_image_store *p, picture *to, int can_decode)
 {
     const size_t bytes = bytes_of(to);
     pthread_mutex_lock(&p->lock);
@@ -134,7 +134,7 @@ static void find_place(adcgs_pictures *p, picture *to, int can_decode)
 }
 
 /** Other processes took the room, or the disk fails: the file does not grow any further. */
-static void give_up_file(adcgs_pictures *p, picture *to, int problem)
+static void give_up_file(adcgs_image_store *p, picture *to, int problem)
 {
     pthread_mutex_lock(&p->lock);
     to->place = NOWHERE;
@@ -144,7 +144,7 @@ static void give_up_file(adcgs_pictures *p, picture *to, int problem)
 }
 
 /** can_decode: the image comes from the scene, and can be decoded from its files again. */
-static adcgs_status keep(adcgs_pictures *p, picture *to, float *rgb, int can_decode, adcgs_error *error)
+static adcgs_status keep(adcgs_image_store *p, picture *to, float *rgb, int can_decode, adcgs_error *error)
 {
     const adcgs_status status = hide(to, rgb, error);
     if (status != ADCGS_OK) {
@@ -167,27 +167,27 @@ static adcgs_status keep(adcgs_pictures *p, picture *to, float *rgb, int can_dec
 }
 
 typedef struct load_job {
-    adcgs_pictures *pictures;
+    adcgs_image_store *pictures;
     adcgs_view_runs runs;
     adcgs_error *errors; /**< one for each view */
     uint32_t done;       /**< protected by the lock */
     int stop;            /**< likewise */
 } load_job;
 
-static adcgs_status load(adcgs_pictures *p, uint32_t view, adcgs_error *error)
+static adcgs_status load(adcgs_image_store *p, uint32_t view, adcgs_error *error)
 {
     float *rgb;
     ADCGS_TRY(adcgs_scene_load(p->scene, &p->scene->views[p->config.split][view], p->config.divide, &rgb, &p->list[view].camera,
                                error));
-    if (p->config.glances)
-        adcgs_glance_take(&p->config.glances[view], rgb, p->list[view].camera.width, p->list[view].camera.height);
+    if (p->config.thumbnails)
+        adcgs_thumbnail_compute(&p->config.thumbnails[view], rgb, p->list[view].camera.width, p->list[view].camera.height);
     return keep(p, &p->list[view], rgb, 1, error);
 }
 
 /** Counts an image as loaded, or as failed. \return true to continue */
 static int tell(load_job *job, adcgs_status status)
 {
-    adcgs_pictures *p = job->pictures;
+    adcgs_image_store *p = job->pictures;
     pthread_mutex_lock(&p->lock);
     job->done += status == ADCGS_OK;
     if (status == ADCGS_OK && !job->stop && p->config.progress)
@@ -220,7 +220,7 @@ static adcgs_status first_error(const load_job *job, adcgs_error *error)
     return job->stop ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted while images were loaded") : ADCGS_OK;
 }
 
-static adcgs_status load_all(adcgs_pictures *p, adcgs_pool *pool, adcgs_error *error)
+static adcgs_status load_all(adcgs_image_store *p, adcgs_pool *pool, adcgs_error *error)
 {
     load_job job = {.pictures = p, .errors = calloc(ADCGS_MAX(p->n, 1), sizeof *job.errors)};
     adcgs_status status = job.errors ? adcgs_view_runs_make(&job.runs, p->scene->views[p->config.split], p->n, error)
@@ -234,16 +234,16 @@ static adcgs_status load_all(adcgs_pictures *p, adcgs_pool *pool, adcgs_error *e
     return status;
 }
 
-adcgs_status adcgs_pictures_load(adcgs_pictures **out, const adcgs_scene *scene, const adcgs_pictures_config *config,
-                                 adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_image_store_load(adcgs_image_store **out, const adcgs_scene *scene, const adcgs_image_store_config *config,
+                                    adcgs_pool *pool, adcgs_error *error)
 {
-    adcgs_pictures *p = calloc(1, sizeof *p);
+    adcgs_image_store *p = calloc(1, sizeof *p);
     *out = NULL;
     if (!p)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for images");
     p->scene = scene;
     p->config = *config;
-    p->config.memory = config->memory ? config->memory : adcgs_pictures_usual_memory();
+    p->config.memory = config->memory ? config->memory : adcgs_image_store_default_memory();
     p->n = scene->n_views[config->split];
     pthread_mutex_init(&p->lock, NULL);
     p->list = calloc(ADCGS_MAX(p->n, 1), sizeof *p->list);
@@ -251,14 +251,14 @@ adcgs_status adcgs_pictures_load(adcgs_pictures **out, const adcgs_scene *scene,
     if (status == ADCGS_OK)
         status = p->list ? load_all(p, pool, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u images", p->n);
     if (status != ADCGS_OK)
-        adcgs_pictures_free(&p);
+        adcgs_image_store_free(&p);
     *out = p;
     return status;
 }
 
-void adcgs_pictures_free(adcgs_pictures **pictures)
+void adcgs_image_store_free(adcgs_image_store **pictures)
 {
-    adcgs_pictures *p = *pictures;
+    adcgs_image_store *p = *pictures;
     if (!p)
         return;
     for (uint32_t i = 0; p->list && i < p->n; i++) {
@@ -274,13 +274,13 @@ void adcgs_pictures_free(adcgs_pictures **pictures)
 
 /* ---- Use ---- */
 
-const adcgs_camera *adcgs_pictures_camera(const adcgs_pictures *pictures, uint32_t view)
+const adcgs_camera *adcgs_image_store_camera(const adcgs_image_store *pictures, uint32_t view)
 {
     return &pictures->list[view].camera;
 }
 
 /** Decodes an image from the scene's files, to the same values as stored ones. */
-static adcgs_status decode_again(const adcgs_pictures *pictures, uint32_t view, float *rgb, adcgs_error *error)
+static adcgs_status decode_again(const adcgs_image_store *pictures, uint32_t view, float *rgb, adcgs_error *error)
 {
     const picture *p = &pictures->list[view];
     const adcgs_scene_view *v = &pictures->scene->views[pictures->config.split][view];
@@ -295,7 +295,7 @@ static adcgs_status decode_again(const adcgs_pictures *pictures, uint32_t view, 
 }
 
 /** \return 0, or errno if nothing was read */
-static int read_file(const adcgs_pictures *pictures, const picture *p, float *rgb)
+static int read_file(const adcgs_image_store *pictures, const picture *p, float *rgb)
 {
     void *const values = malloc(bytes_of(p));
     const int problem = values ? adcgs_spool_read(&pictures->spool, values, bytes_of(p), p->at) : ENOMEM;
@@ -305,7 +305,7 @@ static int read_file(const adcgs_pictures *pictures, const picture *p, float *rg
     return problem;
 }
 
-adcgs_status adcgs_pictures_get(const adcgs_pictures *pictures, uint32_t view, float *rgb, adcgs_error *error)
+adcgs_status adcgs_image_store_get(const adcgs_image_store *pictures, uint32_t view, float *rgb, adcgs_error *error)
 {
     const picture *p = &pictures->list[view];
     if (p->place == IN_MEMORY)
@@ -316,12 +316,12 @@ adcgs_status adcgs_pictures_get(const adcgs_pictures *pictures, uint32_t view, f
     return ADCGS_OK;
 }
 
-const uint8_t *adcgs_pictures_hidden(const adcgs_pictures *pictures, uint32_t view)
+const uint8_t *adcgs_image_store_mask(const adcgs_image_store *pictures, uint32_t view)
 {
     return pictures->list[view].hidden;
 }
 
-adcgs_status adcgs_pictures_put(adcgs_pictures *pictures, uint32_t view, const float *rgb, adcgs_error *error)
+adcgs_status adcgs_image_store_put(adcgs_image_store *pictures, uint32_t view, const float *rgb, adcgs_error *error)
 {
     picture *p = &pictures->list[view];
     float *copy = malloc(values_of(p) * sizeof *copy);
@@ -336,20 +336,20 @@ adcgs_status adcgs_pictures_put(adcgs_pictures *pictures, uint32_t view, const f
     return keep(pictures, p, copy, 0, error);
 }
 
-void adcgs_pictures_expect(const adcgs_pictures *pictures, uint32_t view)
+void adcgs_image_store_prefetch(const adcgs_image_store *pictures, uint32_t view)
 {
     const picture *p = &pictures->list[view];
     if (p->place == IN_FILE)
         posix_fadvise(pictures->spool.file, (off_t)p->at, (off_t)bytes_of(p), POSIX_FADV_WILLNEED);
 }
 
-void adcgs_pictures_size(const adcgs_pictures *pictures, uint64_t *memory, uint64_t *file)
+void adcgs_image_store_size(const adcgs_image_store *pictures, uint64_t *memory, uint64_t *file)
 {
     *memory = pictures->held;
     *file = pictures->spool.used;
 }
 
-uint32_t adcgs_pictures_decoded_again(const adcgs_pictures *pictures, const char **why)
+uint32_t adcgs_image_store_decoded_again(const adcgs_image_store *pictures, const char **why)
 {
     *why = strerror(pictures->spool.problem ? pictures->spool.problem : ENOSPC);
     return pictures->nowhere;

@@ -47,7 +47,7 @@ static uint64_t limited(uint64_t most)
     return !getrlimit(RLIMIT_AS, &space) && space.rlim_cur != RLIM_INFINITY ? ADCGS_MIN(most, (uint64_t)space.rlim_cur) : most;
 }
 
-uint64_t adcgs_pictures_usual_memory(void)
+uint64_t adcgs_image_store_default_memory(void)
 {
     const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
     return limited(pages > 0 && size > 0 ? (uint64_t)pages * (uint64_t)size : (uint64_t)1 << 31) / 2;

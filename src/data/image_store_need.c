@@ -15,33 +15,33 @@ static uint64_t values_of(const adcgs_scene_view *view, int divide)
 }
 
 /** Raises *bytes to the bytes per value of a view, found by loading the view alone. */
-static adcgs_status sample(const adcgs_scene *scene, const adcgs_pictures_config *config, uint32_t view, uint64_t *bytes,
+static adcgs_status sample(const adcgs_scene *scene, const adcgs_image_store_config *config, uint32_t view, uint64_t *bytes,
                            adcgs_error *error)
 {
-    adcgs_pictures *one;
+    adcgs_image_store *one;
     adcgs_scene part = *scene;
-    adcgs_pictures_config alone = *config;
+    adcgs_image_store_config alone = *config;
     uint64_t memory, file;
     part.views[config->split] += view;
     part.n_views[config->split] = 1;
     alone.memory = UINT64_MAX;
     alone.progress = NULL;
-    alone.glances = NULL;
-    ADCGS_TRY(adcgs_pictures_load(&one, &part, &alone, NULL, error));
-    adcgs_pictures_size(one, &memory, &file);
-    adcgs_pictures_free(&one);
+    alone.thumbnails = NULL;
+    ADCGS_TRY(adcgs_image_store_load(&one, &part, &alone, NULL, error));
+    adcgs_image_store_size(one, &memory, &file);
+    adcgs_image_store_free(&one);
     *bytes = ADCGS_MAX(*bytes, memory / values_of(&part.views[config->split][0], config->divide));
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_pictures_foresee(adcgs_pictures_need *need, const adcgs_scene *scene, const adcgs_pictures_config *config,
-                                    adcgs_error *error)
+adcgs_status adcgs_image_store_estimate(adcgs_image_store_need *need, const adcgs_scene *scene,
+                                        const adcgs_image_store_config *config, adcgs_error *error)
 {
     const adcgs_scene_view *views = scene->views[config->split];
     const uint32_t n = scene->n_views[config->split];
-    const uint64_t budget = config->memory ? config->memory : adcgs_pictures_usual_memory();
+    const uint64_t budget = config->memory ? config->memory : adcgs_image_store_default_memory();
     uint64_t values = 0, bytes = 1;
-    *need = (adcgs_pictures_need){.n = n};
+    *need = (adcgs_image_store_need){.n = n};
     for (uint32_t i = 0; i < n; i++)
         values += values_of(&views[i], config->divide);
     if (values * sizeof(float) <= budget) {

@@ -164,7 +164,7 @@ void adcgs_scene_part_free(adcgs_scene **part)
     *part = NULL;
 }
 
-adcgs_status adcgs_scene_part_moments(adcgs_scene *part, adcgs_error *error)
+adcgs_status adcgs_scene_part_count_times(adcgs_scene *part, adcgs_error *error)
 {
     double *moment;
     part->n_times = 0;

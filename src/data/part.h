@@ -38,7 +38,7 @@ adcgs_status adcgs_scene_part(adcgs_scene *part, const adcgs_scene *whole, const
 adcgs_status adcgs_scene_part_create(adcgs_scene **part, const adcgs_scene *whole, adcgs_error *error);
 void adcgs_scene_part_free(adcgs_scene **part);
 /** Sets n_times from its views. Call it after all views and the duration are set. */
-adcgs_status adcgs_scene_part_moments(adcgs_scene *part, adcgs_error *error);
+adcgs_status adcgs_scene_part_count_times(adcgs_scene *part, adcgs_error *error);
 
 /** Frees the memory that the part owns. */
 void adcgs_scene_part_clear(adcgs_scene *part);

@@ -229,7 +229,7 @@ adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, doub
     adcgs_buffer out;
     adcgs_rdo rdo;
     if (strength >= 0)
-        ADCGS_TRY(adcgs_level_prices(t, strength, &rdo, error));
+        ADCGS_TRY(adcgs_level_costs(t, strength, &rdo, error));
     adcgs_buffer_init(&out);
     adcgs_status status = make_stream(&stream, t, strength >= 0 ? &rdo : NULL, notes, n_notes, error);
     if (status == ADCGS_OK)

@@ -48,14 +48,14 @@ adcgs_status adcgs_encode_live_open(adcgs_encode_live *e, const adcgs_scene *who
     return adcgs_push_create(&e->reader, &e->back, &options, error);
 }
 
-adcgs_status adcgs_encode_live_go_on(adcgs_encode_live *e, adcgs_stream *past, uint32_t max_anchors, adcgs_cpu_level cpu,
-                                     adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_encode_live_continue(adcgs_encode_live *e, adcgs_stream *resumed, uint32_t max_anchors, adcgs_cpu_level cpu,
+                                        adcgs_pool *pool, adcgs_error *error)
 {
     const adcgs_read_options options = { .cpu = cpu, .pool = pool };
-    *e = (adcgs_encode_live){ .front = *past, .max_anchors = max_anchors };
-    past->cameras = NULL;
-    past->meta = NULL;
-    past->n_cameras = past->n_meta = 0;
+    *e = (adcgs_encode_live){ .front = *resumed, .max_anchors = max_anchors };
+    resumed->cameras = NULL;
+    resumed->meta = NULL;
+    resumed->n_cameras = resumed->n_meta = 0;
     e->front.segments = NULL;
     e->front.n_segments = e->front.first_segment = 0;
     e->front.level = LEVEL;

@@ -27,11 +27,11 @@ adcgs_status adcgs_encode_live_open(adcgs_encode_live *live, const adcgs_scene *
                                     uint32_t max_anchors, const adcgs_encode_note *notes, uint32_t n_notes, adcgs_cpu_level cpu,
                                     adcgs_pool *pool, adcgs_error *error);
 /**
- * Continues an existing stream. `past` holds the values that all of its segments share; they move to this stream, while its
+ * Continues an existing stream. `resumed` holds the values that all of its segments share; they move to this stream, while its
  * segments stay the caller's. The caller adds those segments like new ones, and they come out unchanged.
  */
-adcgs_status adcgs_encode_live_go_on(adcgs_encode_live *live, adcgs_stream *past, uint32_t max_anchors, adcgs_cpu_level cpu,
-                                     adcgs_pool *pool, adcgs_error *error);
+adcgs_status adcgs_encode_live_continue(adcgs_encode_live *live, adcgs_stream *resumed, uint32_t max_anchors, adcgs_cpu_level cpu,
+                                        adcgs_pool *pool, adcgs_error *error);
 /** Checks that the stream's cameras belong to a scene. ADCGS_ERR_USAGE names one that does not. */
 adcgs_status adcgs_encode_live_check(const adcgs_encode_live *live, const adcgs_scene *scene, adcgs_error *error);
 /**

@@ -11,10 +11,11 @@
 
 #define READ_BYTES 65536
 
-adcgs_status adcgs_past_open(adcgs_past *p, const char *path, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_resume_reader_open(adcgs_resume_reader *p, const char *path, adcgs_cpu_level cpu, adcgs_pool *pool,
+                                      adcgs_error *error)
 {
     const adcgs_read_options options = { .cpu = cpu, .pool = pool };
-    *p = (adcgs_past){ .path = path, .file = fopen(path, "rb") };
+    *p = (adcgs_resume_reader){ .path = path, .file = fopen(path, "rb") };
     adcgs_stream_init(&p->stream);
     if (!p->file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: %s", path, strerror(errno));
@@ -24,18 +25,18 @@ adcgs_status adcgs_past_open(adcgs_past *p, const char *path, adcgs_cpu_level cp
     return adcgs_push_create(&p->reader, &p->stream, &options, error);
 }
 
-void adcgs_past_close(adcgs_past *p)
+void adcgs_resume_reader_close(adcgs_resume_reader *p)
 {
     adcgs_push_free(&p->reader);
     adcgs_stream_clear(&p->stream, NULL);
     if (p->file)
         fclose(p->file);
     free(p->bytes);
-    *p = (adcgs_past){ .file = NULL };
+    *p = (adcgs_resume_reader){ .file = NULL };
 }
 
 /** Decodes to the end of a chunk at most. A fault of the stream ends reading, without a failure. */
-static adcgs_status step(adcgs_past *p, adcgs_error *error)
+static adcgs_status step(adcgs_resume_reader *p, adcgs_error *error)
 {
     adcgs_arrival arrived = ADCGS_ARRIVED_NOTHING;
     size_t used = 0;
@@ -59,7 +60,7 @@ static adcgs_status step(adcgs_past *p, adcgs_error *error)
 }
 
 /** Returns the last segment before the file ends or its damage begins, if the segment is complete. */
-static adcgs_status take_last(adcgs_past *p, adcgs_model *model, adcgs_error *error)
+static adcgs_status take_last(adcgs_resume_reader *p, adcgs_model *model, adcgs_error *error)
 {
     adcgs_push_progress progress;
     int drawable = 0;
@@ -75,7 +76,7 @@ static adcgs_status take_last(adcgs_past *p, adcgs_model *model, adcgs_error *er
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_past_next(adcgs_past *p, adcgs_model *model, adcgs_error *error)
+adcgs_status adcgs_resume_reader_next(adcgs_resume_reader *p, adcgs_model *model, adcgs_error *error)
 {
     *model = (adcgs_model){ .n = 0 };
     while (!p->over && p->stream.first_segment + p->stream.n_segments == p->given)

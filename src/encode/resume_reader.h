@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-typedef struct adcgs_past {
+typedef struct adcgs_resume_reader {
     adcgs_stream stream;   /**< values that all segments share; valid after the first segment */
     adcgs_push_reader *reader;
     const char *path;
@@ -18,15 +18,16 @@ typedef struct adcgs_past {
     int over;              /**< nothing more can be read */
     int is_done;           /**< nothing more can be returned */
     adcgs_error fault;     /**< the reason, if it was damage */
-} adcgs_past;
+} adcgs_resume_reader;
 
-/** path outlives it. Call adcgs_past_close() on failure, too. */
-adcgs_status adcgs_past_open(adcgs_past *past, const char *path, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
-void adcgs_past_close(adcgs_past *past);
+/** path outlives it. Call adcgs_resume_reader_close() on failure, too. */
+adcgs_status adcgs_resume_reader_open(adcgs_resume_reader *resumed, const char *path, adcgs_cpu_level cpu, adcgs_pool *pool,
+                                      adcgs_error *error);
+void adcgs_resume_reader_close(adcgs_resume_reader *resumed);
 /**
  * Returns the next complete segment as a model that the caller owns. n 0: no more segments, since the stream ends here, was cut
  * off or is damaged (fault). ADCGS_ERR_IO, ADCGS_ERR_MEMORY.
  */
-adcgs_status adcgs_past_next(adcgs_past *past, adcgs_model *model, adcgs_error *error);
+adcgs_status adcgs_resume_reader_next(adcgs_resume_reader *resumed, adcgs_model *model, adcgs_error *error);
 
 #endif

@@ -11,6 +11,7 @@
  * Copies a complete stream from its beginning, and replaces the payload of HEAD by one of the same length, wherever HEAD lies.
  * path is for messages. ADCGS_ERR_DATA if it is no such stream.
  */
-adcgs_status adcgs_encode_settle(FILE *to, FILE *from, const uint8_t *head, size_t bytes, const char *path, adcgs_error *error);
+adcgs_status adcgs_encode_replace_head(FILE *to, FILE *from, const uint8_t *head, size_t bytes, const char *path,
+                                       adcgs_error *error);
 
 #endif

@@ -202,15 +202,15 @@ static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *erro
     f->keep = adcgs_alloc(NULL, groups * f->params.k * ADCGS_LANES, sizeof(float), error);
     f->moving = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
     f->live = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
-    f->learns = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
+    f->trainable = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
     f->body = adcgs_alloc(NULL, groups * ADCGS_LANES, 1, error);
     f->tier = adcgs_alloc(NULL, groups * ADCGS_LANES, 1, error);
-    if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live || !f->learns || !f->body || !f->tier)
+    if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live || !f->trainable || !f->body || !f->tier)
         return adcgs_alloc_status(error);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         ADCGS_TRY(param_alloc(&f->param[i], groups * (size_t)adcgs_fmodel_rows(f, i) * ADCGS_LANES, error));
     for (size_t i = 0; i < groups * ADCGS_LANES; i++)
-        f->learns[i] = 1;
+        f->trainable[i] = 1;
     return ADCGS_OK;
 }
 
@@ -283,7 +283,7 @@ static void free_anchors(adcgs_fmodel *f)
     adcgs_free(NULL, f->keep);
     adcgs_free(NULL, f->moving);
     adcgs_free(NULL, f->live);
-    adcgs_free(NULL, f->learns);
+    adcgs_free(NULL, f->trainable);
     adcgs_free(NULL, f->body);
     adcgs_free(NULL, f->tier);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
@@ -336,7 +336,7 @@ adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], con
             }
         }
         if (!fresh || !fresh[j])
-            copy_rows(f->learns, old.learns, j, source[j], 1);
+            copy_rows(f->trainable, old.trainable, j, source[j], 1);
         copy_rows(f->keep, old.keep, j, source[j], f->params.k);
         copy_rows(f->moving, old.moving, j, source[j], 1);
         f->body[j] = old.body[source[j]];

@@ -65,7 +65,7 @@ typedef struct adcgs_fmodel {
     float *keep;                /**< [group][k][64] primitives that exist */
     float *moving;              /**< [group][64] 1: moving; 0: static */
     float *live;                /**< [group][64] 1 for anchors, 0 for padding */
-    float *learns;              /**< [group][64] 0: the anchor is frozen, with the values of the previous segment; 1: trained */
+    float *trainable;           /**< [group][64] 0: the anchor is frozen, with the values of the previous segment; 1: trained */
     int follows;                /**< 1: continues the model of the previous segment, see from_model.h */
     uint8_t *body;              /**< [group][64] rigid body of the anchor while it moves, from 1; 0: none */
     uint8_t *tier;              /**< [group][64] tier of the anchor; see train/tier_assignment.h */

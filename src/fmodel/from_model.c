@@ -94,7 +94,7 @@ static void take_anchor(adcgs_fmodel *f, const adcgs_model *model, uint32_t a, c
     f->moving[a] = p->time_rows && !model->is_static[a];
     f->body[a] = model->body[a];
     f->tier[a] = model->tier[a];
-    f->learns[a] = 0;
+    f->trainable[a] = 0;
     for (int k = 0; k < p->k; k++)
         f->keep[adcgs_fmodel_slot(f, a, k)] = (float)(model->mask[a] >> k & 1);
 }

@@ -28,10 +28,10 @@ static void quantise_rows(const forward_job *job, uint32_t g, int i, float *to, 
 /** Keeps the values of frozen anchors, which are already those of the stream. */
 static void spare_settled(const adcgs_fmodel *f, uint32_t g, float *to, const float *value, int rows)
 {
-    const float *learns = f->learns + (size_t)g * ADCGS_LANES;
+    const float *trainable = f->trainable + (size_t)g * ADCGS_LANES;
     for (int r = 0; r < rows; r++, to += ADCGS_LANES, value += ADCGS_LANES)
         for (int l = 0; l < ADCGS_LANES; l++)
-            to[l] = learns[l] != 0 ? to[l] : value[l];
+            to[l] = trainable[l] != 0 ? to[l] : value[l];
 }
 
 /** Quantises a group. f_v is first, because the other steps may depend on it. */

@@ -77,9 +77,10 @@ static int by_name(const void *name, const void *image)
 }
 
 /** The image of a shot; NULL if it has no pose. */
-static const adcgs_colmap_image *find_image(const adcgs_poses *poses, const adcgs_shots *shots, const adcgs_shot *shot)
+static const adcgs_colmap_image *find_image(const adcgs_poses *poses, const adcgs_source_images *shots,
+                                            const adcgs_source_image *shot)
 {
-    char name[2 * ADCGS_SHOT_NAME + 16];
+    char name[2 * ADCGS_SOURCE_IMAGE_NAME + 16];
     snprintf(name, sizeof name, "%s/%s.%s", shots->cameras[shot->camera].folder, shot->stem, shot->end);
     return poses->model.n_images ? bsearch(name, poses->model.images, poses->model.n_images, sizeof *poses->model.images, by_name)
                                  : NULL;
@@ -142,7 +143,7 @@ static void take_mean(const mean_pose *mean, double pose[12])
 /** Lists a fixed camera, with one pose for all its images. */
 static adcgs_status list_standing(adcgs_poses *poses, const adcgs_import_job *job, uint32_t camera)
 {
-    const adcgs_shots *shots = &job->shots;
+    const adcgs_source_images *shots = &job->shots;
     mean_pose mean = {.n = 0};
     for (uint32_t i = 0; i < shots->n; i++) {
         const adcgs_colmap_image *image = shots->shots[i].camera == camera ? find_image(poses, shots, &shots->shots[i]) : NULL;
@@ -167,7 +168,7 @@ static double square_distance(const double a[12], const double b[12])
 /** Root mean square distance of the images' own poses from their cameras' poses. */
 static double find_spread(const adcgs_poses *poses, const adcgs_import_job *job)
 {
-    const adcgs_shots *shots = &job->shots;
+    const adcgs_source_images *shots = &job->shots;
     double squares = 0.0;
     for (uint32_t p = 0; p < poses->n; p++)
         for (uint32_t i = 0; i < shots->n; i++) {
@@ -230,7 +231,7 @@ static int by_id(const void *a, const void *b)
 /** Adds the images of a training view to the list of training images. */
 static void add_training(adcgs_poses *poses, const adcgs_import_job *job, const adcgs_posed *posed)
 {
-    const adcgs_shots *shots = &job->shots;
+    const adcgs_source_images *shots = &job->shots;
     const int stands = shots->kind == ADCGS_FOOTAGE_RIG;
     for (uint32_t i = 0; i < shots->n; i++) {
         const int is_own = stands ? shots->shots[i].camera == shots->shots[posed->shot].camera : i == posed->shot;

@@ -160,9 +160,9 @@ static adcgs_status finish(const adcgs_import_job *job)
 
 static void report_footage(const adcgs_import_job *job)
 {
-    const adcgs_shots *shots = &job->shots;
+    const adcgs_source_images *shots = &job->shots;
     adcgs_import_report *r = job->report;
-    const adcgs_shot_camera *first = &shots->cameras[0];
+    const adcgs_source_image_camera *first = &shots->cameras[0];
     r->kind = kinds[shots->kind];
     r->pictures = shots->n;
     r->is_numbered = shots->is_numbered && shots->kind == ADCGS_FOOTAGE_PICTURES;
@@ -193,7 +193,7 @@ static adcgs_status run(adcgs_import_job *job)
     if (adcgs_is_there(o->output))
         return adcgs_fail(job->error, ADCGS_ERR_USAGE, "%s: exists already", o->output);
     ADCGS_TRY(adcgs_import_ask(&program, o, job->error));
-    ADCGS_TRY(adcgs_shots_list(&job->shots, o, job->progress, job->error));
+    ADCGS_TRY(adcgs_source_images_list(&job->shots, o, job->progress, job->error));
     report_footage(job);
     if (!(job->folder = adcgs_path("%s" UNFINISHED, o->output)) || !(job->log = adcgs_path("%s/colmap.log", job->folder)))
         return no_memory(job);
@@ -206,7 +206,7 @@ adcgs_status adcgs_import(const adcgs_import_options *options, adcgs_progress *p
     adcgs_import_job job = {.options = options, .progress = progress, .report = report, .error = error};
     *report = (adcgs_import_report){.kind = ""};
     const adcgs_status status = run(&job);
-    adcgs_shots_clear(&job.shots);
+    adcgs_source_images_clear(&job.shots);
     free(job.folder);
     free(job.log);
     return status;

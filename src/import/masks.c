@@ -28,7 +28,7 @@ static adcgs_status find(const adcgs_import_job *job, const char *name, int leng
  * Finds an image's mask: by the image's file name with or without its extension, by the name of the image in the scene, or else
  * by its camera's name.
  */
-static adcgs_status find_mask(const adcgs_import_job *job, const adcgs_shot *shot, char **out)
+static adcgs_status find_mask(const adcgs_import_job *job, const adcgs_source_image *shot, char **out)
 {
     const char *slash = shot->path ? strrchr(shot->path, '/') : NULL, *file = slash ? slash + 1 : shot->path;
     const char *const camera = job->shots.cameras[shot->camera].name;
@@ -48,7 +48,8 @@ static adcgs_status find_mask(const adcgs_import_job *job, const adcgs_shot *sho
 }
 
 /** Checks that the mask has the aspect ratio of the image before rotation. */
-static adcgs_status check_shape(const adcgs_import_job *job, const adcgs_shot *shot, const char *path, const adcgs_image *mask)
+static adcgs_status check_shape(const adcgs_import_job *job, const adcgs_source_image *shot, const char *path,
+                                const adcgs_image *mask)
 {
     const int lies = adcgs_photo_lies(shot->turn);
     const int width = lies ? shot->height : shot->width, height = lies ? shot->width : shot->height;
@@ -74,7 +75,7 @@ static void make_plain(adcgs_image *mask, float threshold)
     mask->channels = 1;
 }
 
-static adcgs_status make_mask(const adcgs_import_job *job, const adcgs_shot *shot, const char *from, const char *to)
+static adcgs_status make_mask(const adcgs_import_job *job, const adcgs_source_image *shot, const char *from, const char *to)
 {
     adcgs_image mask;
     ADCGS_TRY(adcgs_image_read(&mask, from, job->error));
@@ -91,7 +92,7 @@ static adcgs_status make_mask(const adcgs_import_job *job, const adcgs_shot *sho
     return status;
 }
 
-adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_shot *shot)
+adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_source_image *shot)
 {
     char *from;
     ADCGS_TRY(find_mask(job, shot, &from));

@@ -53,7 +53,7 @@ static adcgs_status copy_file(const char *from, const char *to, adcgs_error *err
     return status;
 }
 
-static adcgs_status write_shaped(adcgs_import_job *job, const adcgs_shot *shot, adcgs_image *image, const char *from,
+static adcgs_status write_shaped(adcgs_import_job *job, const adcgs_source_image *shot, adcgs_image *image, const char *from,
                                  const char *to)
 {
     ADCGS_TRY(adcgs_photo_shape(image, shot->turn, shot->width, shot->height, from, job->error));
@@ -61,7 +61,7 @@ static adcgs_status write_shaped(adcgs_import_job *job, const adcgs_shot *shot, 
 }
 
 /** Makes an image from a file. */
-static adcgs_status make_picture(adcgs_import_job *job, const adcgs_shot *shot, const char *to)
+static adcgs_status make_picture(adcgs_import_job *job, const adcgs_source_image *shot, const char *to)
 {
     adcgs_image image;
     if (shot->as_is)
@@ -73,7 +73,7 @@ static adcgs_status make_picture(adcgs_import_job *job, const adcgs_shot *shot, 
 }
 
 /** Makes an image from a frame of an open video. */
-static adcgs_status make_frame(adcgs_import_job *job, const adcgs_shot *shot, adcgs_video *video, const char *to)
+static adcgs_status make_frame(adcgs_import_job *job, const adcgs_source_image *shot, adcgs_video *video, const char *to)
 {
     adcgs_image image;
     ADCGS_TRY(adcgs_video_read(video, shot->frame, &image, job->error));
@@ -84,18 +84,18 @@ static adcgs_status make_frame(adcgs_import_job *job, const adcgs_shot *shot, ad
 
 /* ---- All images of a camera ---- */
 
-static adcgs_status make_shot(adcgs_import_job *job, adcgs_shot *shot, adcgs_video *video)
+static adcgs_status make_shot(adcgs_import_job *job, adcgs_source_image *shot, adcgs_video *video)
 {
     char *images, *to = NULL;
     ADCGS_TRY(adcgs_import_goes_on(job));
     ADCGS_TRY(adcgs_import_path(&images, job, "images"));
-    adcgs_status status = (to = adcgs_shot_path(&job->shots, shot, images))
+    adcgs_status status = (to = adcgs_source_image_path(&job->shots, shot, images))
                               ? ADCGS_OK : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", images);
     free(images);
     if (status == ADCGS_OK && video) {
         shot->width = adcgs_video_get_info(video)->width;
         shot->height = adcgs_video_get_info(video)->height;
-        adcgs_shot_fit(&shot->width, &shot->height, job->options->side);
+        adcgs_source_image_fit(&shot->width, &shot->height, job->options->side);
     }
     if (status == ADCGS_OK && !adcgs_is_there(to))
         status = video ? make_frame(job, shot, video, to) : make_picture(job, shot, to);
@@ -108,7 +108,7 @@ static adcgs_status make_shot(adcgs_import_job *job, adcgs_shot *shot, adcgs_vid
 /** Makes the images of one camera, in the order of its video's frames. */
 static adcgs_status make_shots(adcgs_import_job *job, uint32_t camera, uint32_t *done)
 {
-    adcgs_shots *shots = &job->shots;
+    adcgs_source_images *shots = &job->shots;
     adcgs_video *video = NULL;
     adcgs_status status =
         shots->cameras[camera].video ? adcgs_video_open(&video, shots->cameras[camera].video, job->error) : ADCGS_OK;
@@ -178,7 +178,7 @@ adcgs_status adcgs_import_videos(adcgs_import_job *job)
 {
     ADCGS_TRY(adcgs_import_make_folder(job, "videos"));
     for (uint32_t i = 0; i < job->shots.n_cameras; i++) {
-        const adcgs_shot_camera *camera = &job->shots.cameras[i];
+        const adcgs_source_image_camera *camera = &job->shots.cameras[i];
         char *to = adcgs_path("%s/videos/%s.%s", job->folder, camera->name, adcgs_extension(camera->video));
         adcgs_status status = !to                  ? adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", job->folder)
                               : adcgs_is_there(to) ? ADCGS_OK

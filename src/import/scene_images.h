@@ -7,7 +7,7 @@
 
 typedef struct adcgs_import_job {
     const adcgs_import_options *options;
-    adcgs_shots shots;
+    adcgs_source_images shots;
     char *folder;      /**< folder of the unfinished scene */
     char *log;         /**< path of COLMAP's log */
     int has_masks;     /**< at least one image has a mask */
@@ -37,7 +37,7 @@ adcgs_status adcgs_import_videos(adcgs_import_job *job);
 /* ---- Shared: masks.c ---- */
 
 /** Makes the mask of a shot, if there is one, to fit its image. */
-adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_shot *shot);
+adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_source_image *shot);
 /** Copies the mask that applies to a camera's whole footage without resizing it, if there is one. */
 adcgs_status adcgs_import_camera_mask(adcgs_import_job *job, uint32_t camera);
 

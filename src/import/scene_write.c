@@ -63,8 +63,8 @@ static adcgs_status write_file(adcgs_json *json, const char *field, const adcgs_
 
 static adcgs_status write_footage(adcgs_json *json, const adcgs_import_job *job, const adcgs_posed *posed)
 {
-    const adcgs_shot *shot = &job->shots.shots[posed->shot];
-    const adcgs_shot_camera *camera = &job->shots.cameras[shot->camera];
+    const adcgs_source_image *shot = &job->shots.shots[posed->shot];
+    const adcgs_source_image_camera *camera = &job->shots.cameras[shot->camera];
     if (job->shots.kind == ADCGS_FOOTAGE_RIG) {
         ADCGS_TRY(write_file(json, "video", job, adcgs_path("videos/%s.%s", camera->name, adcgs_extension(camera->video))));
         return write_file(json, "masks", job, adcgs_path("masks/%s.png", camera->name));
@@ -76,7 +76,7 @@ static adcgs_status write_footage(adcgs_json *json, const adcgs_import_job *job,
 
 static adcgs_status write_camera(adcgs_json *json, const adcgs_import_job *job, const adcgs_posed *posed)
 {
-    const adcgs_shot *shot = &job->shots.shots[posed->shot];
+    const adcgs_source_image *shot = &job->shots.shots[posed->shot];
     adcgs_json_open(json, NULL, '{');
     adcgs_json_string(json, "name", job->shots.kind == ADCGS_FOOTAGE_RIG ? job->shots.cameras[shot->camera].name : shot->stem);
     ADCGS_TRY(write_footage(json, job, posed));

@@ -12,7 +12,7 @@
 
 #define SHOTS_MAX 10000 /* limit of cameras in a scene file */
 
-void adcgs_shots_clear(adcgs_shots *shots)
+void adcgs_source_images_clear(adcgs_source_images *shots)
 {
     for (uint32_t i = 0; i < shots->n; i++)
         free(shots->shots[i].path);
@@ -20,15 +20,15 @@ void adcgs_shots_clear(adcgs_shots *shots)
         free(shots->cameras[i].video);
     free(shots->shots);
     free(shots->cameras);
-    *shots = (adcgs_shots){0};
+    *shots = (adcgs_source_images){0};
 }
 
-char *adcgs_shot_path(const adcgs_shots *shots, const adcgs_shot *shot, const char *folder)
+char *adcgs_source_image_path(const adcgs_source_images *shots, const adcgs_source_image *shot, const char *folder)
 {
     return adcgs_path("%s/%s/%s.%s", folder, shots->cameras[shot->camera].folder, shot->stem, shot->end);
 }
 
-void adcgs_shot_fit(int *width, int *height, int side)
+void adcgs_source_image_fit(int *width, int *height, int side)
 {
     const int longer = ADCGS_MAX(*width, *height);
     if (longer <= side)
@@ -42,9 +42,9 @@ void adcgs_shot_fit(int *width, int *height, int side)
 /**
  * Makes a name that every program accepts: letters, digits and -, with _ for others. It is cut so that a number fits behind it.
  */
-static void clean_name(char out[ADCGS_SHOT_NAME], const char *text)
+static void clean_name(char out[ADCGS_SOURCE_IMAGE_NAME], const char *text)
 {
-    snprintf(out, ADCGS_SHOT_NAME, "%.50s", text);
+    snprintf(out, ADCGS_SOURCE_IMAGE_NAME, "%.50s", text);
     for (char *c = out; *c; c++)
         *c = isalnum((unsigned char)*c) || *c == '-' ? *c : '_';
     if (!*out)
@@ -52,16 +52,16 @@ static void clean_name(char out[ADCGS_SHOT_NAME], const char *text)
 }
 
 /** Makes a name unique by appending a number. names are `size` bytes apart; the first n are used. */
-static void make_unique(char name[ADCGS_SHOT_NAME], const char *names, uint32_t n, size_t size)
+static void make_unique(char name[ADCGS_SOURCE_IMAGE_NAME], const char *names, uint32_t n, size_t size)
 {
-    char wanted[ADCGS_SHOT_NAME];
+    char wanted[ADCGS_SOURCE_IMAGE_NAME];
     memcpy(wanted, name, sizeof wanted);
     for (uint32_t i = 0, number = 2; i < n;) {
         if (strcmp(name, names + i * size)) {
             i++;
             continue;
         }
-        snprintf(name, ADCGS_SHOT_NAME, "%.50s-%u", wanted, number++);
+        snprintf(name, ADCGS_SOURCE_IMAGE_NAME, "%.50s-%u", wanted, number++);
         i = 0;
     }
 }
@@ -79,14 +79,14 @@ static void *grow(void *array, uint32_t n, size_t element, adcgs_error *error)
     return more;
 }
 
-adcgs_shot *adcgs_shots_add(adcgs_shots *shots, uint32_t camera, const char *stem, adcgs_error *error)
+adcgs_source_image *adcgs_source_images_add(adcgs_source_images *shots, uint32_t camera, const char *stem, adcgs_error *error)
 {
-    adcgs_shot *all = grow(shots->shots, shots->n, sizeof *all, error);
+    adcgs_source_image *all = grow(shots->shots, shots->n, sizeof *all, error);
     if (!all)
         return NULL;
     shots->shots = all;
-    adcgs_shot *shot = &all[shots->n];
-    *shot = (adcgs_shot){.camera = camera, .turn = ADCGS_PHOTO_UPRIGHT};
+    adcgs_source_image *shot = &all[shots->n];
+    *shot = (adcgs_source_image){.camera = camera, .turn = ADCGS_PHOTO_UPRIGHT};
     clean_name(shot->stem, stem);
     if (shots->kind != ADCGS_FOOTAGE_FILM || !shots->cameras[camera].video) /* frames of one video have numbers */
         make_unique(shot->stem, all[0].stem, shots->n, sizeof *all);
@@ -95,14 +95,14 @@ adcgs_shot *adcgs_shots_add(adcgs_shots *shots, uint32_t camera, const char *ste
     return shot;
 }
 
-adcgs_shot_camera *adcgs_shots_add_camera(adcgs_shots *shots, const char *name, adcgs_error *error)
+adcgs_source_image_camera *adcgs_source_images_add_camera(adcgs_source_images *shots, const char *name, adcgs_error *error)
 {
-    adcgs_shot_camera *all = grow(shots->cameras, shots->n_cameras, sizeof *all, error);
+    adcgs_source_image_camera *all = grow(shots->cameras, shots->n_cameras, sizeof *all, error);
     if (!all)
         return NULL;
     shots->cameras = all;
-    adcgs_shot_camera *camera = &all[shots->n_cameras];
-    *camera = (adcgs_shot_camera){.frames = 0};
+    adcgs_source_image_camera *camera = &all[shots->n_cameras];
+    *camera = (adcgs_source_image_camera){.frames = 0};
     clean_name(camera->name, name);
     make_unique(camera->name, all[0].name, shots->n_cameras, sizeof *all);
     memcpy(camera->folder, camera->name, sizeof camera->folder);

@@ -15,15 +15,15 @@
 #include <strings.h>
 
 /** Finds the camera of an image by the image's size and its metadata (maker, model and lens). */
-static adcgs_status find_camera(adcgs_shots *shots, const adcgs_photo *photo, uint32_t *camera, adcgs_error *error)
+static adcgs_status find_camera(adcgs_source_images *shots, const adcgs_photo *photo, uint32_t *camera, adcgs_error *error)
 {
-    char key[sizeof shots->cameras->key], name[ADCGS_SHOT_NAME];
+    char key[sizeof shots->cameras->key], name[ADCGS_SOURCE_IMAGE_NAME];
     snprintf(key, sizeof key, "%dx%d %d %s", photo->width, photo->height, photo->turn, photo->camera);
     for (*camera = 0; *camera < shots->n_cameras; ++*camera)
         if (!strcmp(shots->cameras[*camera].key, key))
             return ADCGS_OK;
     snprintf(name, sizeof name, "camera%u", shots->n_cameras + 1);
-    adcgs_shot_camera *added = adcgs_shots_add_camera(shots, name, error);
+    adcgs_source_image_camera *added = adcgs_source_images_add_camera(shots, name, error);
     if (!added)
         return error->status;
     memcpy(added->key, key, sizeof key);
@@ -37,7 +37,8 @@ static int ends_like(const char *path, const char *a, const char *b)
     return !strcasecmp(end, a) || !strcasecmp(end, b);
 }
 
-static adcgs_status add_picture(adcgs_shots *shots, const char *path, const adcgs_import_options *options, adcgs_error *error)
+static adcgs_status add_picture(adcgs_source_images *shots, const char *path, const adcgs_import_options *options,
+                                adcgs_error *error)
 {
     adcgs_photo photo;
     char stem[256];
@@ -45,7 +46,7 @@ static adcgs_status add_picture(adcgs_shots *shots, const char *path, const adcg
     ADCGS_TRY(adcgs_photo_probe(&photo, path, error));
     ADCGS_TRY(find_camera(shots, &photo, &camera, error));
     adcgs_stem(stem, sizeof stem, path);
-    adcgs_shot *shot = adcgs_shots_add(shots, camera, stem, error);
+    adcgs_source_image *shot = adcgs_source_images_add(shots, camera, stem, error);
     if (!shot)
         return error->status;
     const int is_jpeg = ends_like(path, "jpg", "jpeg"), is_png = ends_like(path, "png", "png");
@@ -53,7 +54,7 @@ static adcgs_status add_picture(adcgs_shots *shots, const char *path, const adcg
     shot->turn = photo.turn;
     shot->width = lies ? photo.height : photo.width;
     shot->height = lies ? photo.width : photo.height;
-    adcgs_shot_fit(&shot->width, &shot->height, options->side);
+    adcgs_source_image_fit(&shot->width, &shot->height, options->side);
     shot->as_is = (is_jpeg || is_png) && photo.turn == ADCGS_PHOTO_UPRIGHT && shot->width == photo.width &&
                   shot->height == photo.height;
     snprintf(shot->end, sizeof shot->end, "%s", is_jpeg ? "jpg" : "png");
@@ -111,7 +112,7 @@ static adcgs_status refuse_folder(const char *folder, adcgs_error *error)
     return status == ADCGS_OK ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: no image in this folder", folder) : status;
 }
 
-static adcgs_status add_names(adcgs_shots *shots, const char *folder, const char *const *names, size_t n,
+static adcgs_status add_names(adcgs_source_images *shots, const char *folder, const char *const *names, size_t n,
                               const adcgs_import_options *options, adcgs_progress *progress, adcgs_error *error)
 {
     for (size_t i = 0; i < n; i++) {
@@ -125,7 +126,7 @@ static adcgs_status add_names(adcgs_shots *shots, const char *folder, const char
     return ADCGS_OK;
 }
 
-static adcgs_status add_folder(adcgs_shots *shots, const char *folder, const adcgs_import_options *options,
+static adcgs_status add_folder(adcgs_source_images *shots, const char *folder, const adcgs_import_options *options,
                                adcgs_progress *progress, adcgs_error *error)
 {
     adcgs_listing images, heifs = {0};
@@ -144,8 +145,8 @@ static adcgs_status add_folder(adcgs_shots *shots, const char *folder, const adc
     return status;
 }
 
-adcgs_status adcgs_shots_pictures(adcgs_shots *shots, const adcgs_import_options *options, adcgs_progress *progress,
-                                  adcgs_error *error)
+adcgs_status adcgs_source_images_photos(adcgs_source_images *shots, const adcgs_import_options *options, adcgs_progress *progress,
+                                        adcgs_error *error)
 {
     shots->kind = options->fps.den ? ADCGS_FOOTAGE_FILM : ADCGS_FOOTAGE_PICTURES;
     shots->rate = options->fps;

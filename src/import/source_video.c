@@ -14,13 +14,13 @@
 #define MOMENTS 3 /* frame times of fixed cameras: one time may have too few features to find the poses */
 
 /** Adds a camera for an open video. */
-static adcgs_status add_camera(adcgs_shots *shots, const char *path, const adcgs_video *video,
+static adcgs_status add_camera(adcgs_source_images *shots, const char *path, const adcgs_video *video,
                                const adcgs_import_options *options, adcgs_error *error)
 {
     const adcgs_video_info *info = adcgs_video_get_info(video);
     char stem[256];
     adcgs_stem(stem, sizeof stem, path);
-    adcgs_shot_camera *camera = adcgs_shots_add_camera(shots, stem, error);
+    adcgs_source_image_camera *camera = adcgs_source_images_add_camera(shots, stem, error);
     if (!camera)
         return error->status;
     if (shots->kind == ADCGS_FOOTAGE_RIG && !options->own_lens) /* cameras of a rig are usually of one type */
@@ -32,12 +32,12 @@ static adcgs_status add_camera(adcgs_shots *shots, const char *path, const adcgs
 }
 
 /** Adds a frame of the last camera. */
-static adcgs_status add_frame(adcgs_shots *shots, const adcgs_video *video, int64_t frame, adcgs_error *error)
+static adcgs_status add_frame(adcgs_source_images *shots, const adcgs_video *video, int64_t frame, adcgs_error *error)
 {
-    char stem[2 * ADCGS_SHOT_NAME];
+    char stem[2 * ADCGS_SOURCE_IMAGE_NAME];
     const uint32_t camera = shots->n_cameras - 1;
     snprintf(stem, sizeof stem, "%.40s_%06lld", shots->cameras[camera].name, (long long)frame);
-    adcgs_shot *shot = adcgs_shots_add(shots, camera, stem, error);
+    adcgs_source_image *shot = adcgs_source_images_add(shots, camera, stem, error);
     if (!shot)
         return error->status;
     strcpy(shot->end, "jpg");
@@ -47,7 +47,7 @@ static adcgs_status add_frame(adcgs_shots *shots, const adcgs_video *video, int6
 }
 
 /** Adds at most options->frames frames: the first one and others at equal steps. */
-static adcgs_status add_frames(adcgs_shots *shots, const char *path, const adcgs_video *video,
+static adcgs_status add_frames(adcgs_source_images *shots, const char *path, const adcgs_video *video,
                                const adcgs_import_options *options, adcgs_error *error)
 {
     const adcgs_video_info *info = adcgs_video_get_info(video);
@@ -60,7 +60,8 @@ static adcgs_status add_frames(adcgs_shots *shots, const char *path, const adcgs
                                                  shots->n, adcgs_s(shots->n));
 }
 
-adcgs_status adcgs_shots_film(adcgs_shots *shots, const char *path, const adcgs_import_options *options, adcgs_error *error)
+adcgs_status adcgs_source_images_video(adcgs_source_images *shots, const char *path, const adcgs_import_options *options,
+                                       adcgs_error *error)
 {
     adcgs_video *video;
     shots->kind = ADCGS_FOOTAGE_FILM;
@@ -71,12 +72,12 @@ adcgs_status adcgs_shots_film(adcgs_shots *shots, const char *path, const adcgs_
 }
 
 /** Adds frames at times that all cameras share, if the videos are as long as the first. */
-static adcgs_status add_moments(adcgs_shots *shots, const char *path, const adcgs_video *video,
+static adcgs_status add_moments(adcgs_source_images *shots, const char *path, const adcgs_video *video,
                                 const adcgs_import_options *options, adcgs_error *error)
 {
     const adcgs_video_info *info = adcgs_video_get_info(video);
     ADCGS_TRY(add_camera(shots, path, video, options, error));
-    const adcgs_shot_camera *first = &shots->cameras[0];
+    const adcgs_source_image_camera *first = &shots->cameras[0];
     if (info->frames != first->frames || fabs(adcgs_fps_value(info->rate) / adcgs_fps_value(first->rate) - 1.0) > 0.001)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %lld frames at %.6g per second, but %s has %lld at %.6g: expected "
                           "videos that begin and end together", path, (long long)info->frames, adcgs_fps_value(info->rate),
@@ -90,8 +91,8 @@ static adcgs_status add_moments(adcgs_shots *shots, const char *path, const adcg
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_shots_rig(adcgs_shots *shots, const adcgs_import_options *options, adcgs_progress *progress,
-                             adcgs_error *error)
+adcgs_status adcgs_source_images_rig(adcgs_source_images *shots, const adcgs_import_options *options, adcgs_progress *progress,
+                                     adcgs_error *error)
 {
     char *const *const paths = options->inputs;
     const int n = options->n_inputs;

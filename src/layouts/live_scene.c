@@ -136,7 +136,7 @@ static adcgs_status make_segment(adcgs_live *l, uint32_t stretch, adcgs_live_seg
     for (uint32_t i = 0; i < l->watch.n; i++)
         ADCGS_TRY(add_views(l, i, stretch, s, error));
     find_end(l, s);
-    return adcgs_scene_part_moments(s->scene, error);
+    return adcgs_scene_part_count_times(s->scene, error);
 }
 
 /** Deletes data that no segment from this one on needs: frame records, and files of footage from pipes. */

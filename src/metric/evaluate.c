@@ -35,7 +35,7 @@ typedef struct session {
     const adcgs_scene *scene;
     const adcgs_scene_view *views;
     uint32_t n;
-    uint32_t *of, *order;     /**< [n] from adcgs_sort_by_camera() */
+    uint32_t *of, *order;     /**< [n] from adcgs_group_views() */
     int measure;
     adcgs_temporal *temporal; /**< of the current camera; NULL for a camera with one view, and without a measure over time */
     adcgs_temporal_total total;
@@ -168,7 +168,7 @@ static adcgs_status score_view(session *s, uint32_t i, adcgs_view_score *score, 
 static adcgs_status score_all(session *s, adcgs_evaluation *out, double *seconds, adcgs_error *error)
 {
     uint32_t n_cameras;
-    ADCGS_TRY(adcgs_sort_by_camera(s->views, s->n, s->of, s->order, &n_cameras, error));
+    ADCGS_TRY(adcgs_group_views(s->views, s->n, s->of, s->order, &n_cameras, error));
     for (uint32_t i = 0; i < s->n; i++) {
         adcgs_view_score score;
         ADCGS_TRY(begin_camera(s, i, error));

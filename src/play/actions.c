@@ -93,7 +93,7 @@ static void do_fly(adcgs_play_state *state, int unused)
 
 static void do_shot(adcgs_play_state *state, int unused)
 {
-    state->shot = state->shift ? ADCGS_SHOT_EXR : ADCGS_SHOT_PNG;
+    state->shot = state->shift ? ADCGS_SOURCE_IMAGE_EXR : ADCGS_SOURCE_IMAGE_PNG;
 }
 
 static void do_statistics(adcgs_play_state *state, int unused)

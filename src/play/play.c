@@ -53,9 +53,9 @@ static void begin_shot(adcgs_player *p)
 {
     if (!p->state.shot || *p->shot)
         return;
-    if (!adcgs_play_free_name(p->shot, p->settings->source.path, p->state.shot == ADCGS_SHOT_EXR ? "exr" : "png"))
+    if (!adcgs_play_free_name(p->shot, p->settings->source.path, p->state.shot == ADCGS_SOURCE_IMAGE_EXR ? "exr" : "png"))
         adcgs_play_say(&p->state, "no unused file name is left for a screenshot");
-    p->state.shot = ADCGS_SHOT_NONE;
+    p->state.shot = ADCGS_SOURCE_IMAGE_NONE;
 }
 
 static void set_key_frame(adcgs_player *p)

@@ -23,9 +23,9 @@ typedef enum adcgs_play_drag {
 } adcgs_play_drag;
 
 typedef enum adcgs_play_shot {
-    ADCGS_SHOT_NONE,
-    ADCGS_SHOT_PNG,
-    ADCGS_SHOT_EXR
+    ADCGS_SOURCE_IMAGE_NONE,
+    ADCGS_SOURCE_IMAGE_PNG,
+    ADCGS_SOURCE_IMAGE_EXR
 } adcgs_play_shot;
 
 typedef struct adcgs_rect {

@@ -93,7 +93,7 @@ static adcgs_status index_init(index *x, const adcgs_scene *scene, adcgs_error *
     x->times = adcgs_alloc(NULL, x->n, sizeof *x->times, error);
     if (!x->of || !x->order || !x->times)
         return adcgs_alloc_status(error);
-    ADCGS_TRY(adcgs_sort_by_camera(x->views, x->n, x->of, x->order, &x->n_cameras, error));
+    ADCGS_TRY(adcgs_group_views(x->views, x->n, x->of, x->order, &x->n_cameras, error));
     for (uint32_t i = 0; i < x->n; i++)
         x->times[i] = x->views[i].time;
     adcgs_sort(x->times, x->n);

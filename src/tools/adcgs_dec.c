@@ -243,7 +243,7 @@ static adcgs_status show_live(const adcgs_cli *cli, const settings *s, adcgs_dec
     config.tune_in = !adcgs_is_url(s->input);
     adcgs_status status = adcgs_live_open(&live, decoder, s->input, &config, &s->request, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
-        status = adcgs_dec_tell_joined(cli, *decoder, live.in.name, error);
+        status = adcgs_dec_report_tune_in(cli, *decoder, live.in.name, error);
     if (status == ADCGS_OK)
         status = adcgs_set_tiers(*decoder, s->tiers, error);
     if (status == ADCGS_OK && !adcgs_interrupted())

@@ -93,7 +93,7 @@ static adcgs_status check_writable(const char *path, adcgs_error *error)
 }
 
 /** Writes the model as plain numbers, next to the stream. */
-static adcgs_status write_uncompressed(adcgs_enc_watcher *w, const adcgs_model *model, adcgs_error *error)
+static adcgs_status write_uncompressed(adcgs_enc_context *w, const adcgs_model *model, adcgs_error *error)
 {
     adcgs_buffer bytes;
     adcgs_buffer_init(&bytes);
@@ -105,7 +105,7 @@ static adcgs_status write_uncompressed(adcgs_enc_watcher *w, const adcgs_model *
     return status;
 }
 
-static adcgs_status write_stream(adcgs_stream *stream, adcgs_enc_watcher *w, adcgs_pool *pool, adcgs_error *error)
+static adcgs_status write_stream(adcgs_stream *stream, adcgs_enc_context *w, adcgs_pool *pool, adcgs_error *error)
 {
     adcgs_buffer bytes;
     adcgs_buffer_init(&bytes);
@@ -151,19 +151,19 @@ static adcgs_status check_distinct(const adcgs_enc_options *o, adcgs_error *erro
 
 /* ---- The run ---- */
 
-static adcgs_status report(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time spent, int *met, adcgs_error *error)
+static adcgs_status report(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_time spent, int *met, adcgs_error *error)
 {
     return adcgs_enc_report_print(job->cli, &(adcgs_enc_report){ job->o->output, &job->config, job->cpu, job->scene, w->last,
                                                                  spent, w->uncompressed_bytes, job->o->threads, job->o->json,
-                                                                 w->heard },
+                                                                 w->interrupts },
                                   met, error);
 }
 
-static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
+static adcgs_status encode_whole(adcgs_enc_context *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
 {
     adcgs_stream stream;
     adcgs_enc_ranks_whole(w, job);
-    adcgs_status status = adcgs_enc_learn(w, job, job->scene, NULL, NULL, job->o->finish ? job->o->finish : job->o->resume,
+    adcgs_status status = adcgs_enc_train(w, job, job->scene, NULL, NULL, job->o->finish ? job->o->finish : job->o->resume,
                                           job->o->started, error);
     if (adcgs_enc_team_follows(&w->team))
         return status == ADCGS_OK ? adcgs_rank_follow(w, job, error) : adcgs_rank_fail(job, error);
@@ -184,7 +184,7 @@ static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job,
 
 /* ---- Segments ---- */
 
-static adcgs_status encode_segments(adcgs_enc_watcher *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
+static adcgs_status encode_segments(adcgs_enc_context *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
 {
     adcgs_time spent = { 0, 0 };
     adcgs_claim *claim = NULL;
@@ -193,7 +193,7 @@ static adcgs_status encode_segments(adcgs_enc_watcher *w, const adcgs_enc_job *j
     adcgs_status status = adcgs_claim_take(&claim, name, "the segments", error);
     free(name);
     if (status == ADCGS_OK)
-        status = job->ranks ? adcgs_enc_ranks_lead(w, job, &spent, error) : adcgs_enc_segments_learn(w, job, &spent, error);
+        status = job->ranks ? adcgs_enc_ranks_lead(w, job, &spent, error) : adcgs_enc_segments_train(w, job, &spent, error);
     if (status == ADCGS_OK)
         status = adcgs_enc_segments_write(w, job, &spent, error);
     adcgs_claim_drop(&claim);
@@ -203,7 +203,7 @@ static adcgs_status encode_segments(adcgs_enc_watcher *w, const adcgs_enc_job *j
 /* ---- The program ---- */
 
 /** Checks the options before anything long begins. */
-static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_scene_options *scene, adcgs_error *error)
+static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_context *w, adcgs_scene_options *scene, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
     ADCGS_TRY(adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &job->cpu, error));
@@ -227,7 +227,7 @@ static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_scen
 #define PART_NAME 20 /* most bytes that a part's name adds to the state's: ".<number>.adcgs" */
 
 /** Names the run's state: the file of --checkpoint, else the one that the run continues, else one next to its output. */
-static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
+static adcgs_status name_base(adcgs_enc_context *w, adcgs_error *error)
 {
     const adcgs_enc_options *o = w->o;
     const char *given = o->checkpoint ? o->checkpoint : o->has_segment ? o->resume : NULL;
@@ -246,7 +246,7 @@ static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static adcgs_status open_log(adcgs_enc_watcher *w, adcgs_error *error)
+static adcgs_status open_log(adcgs_enc_context *w, adcgs_error *error)
 {
     const adcgs_enc_options *o = w->o;
     if (adcgs_enc_team_follows(&w->team))
@@ -258,7 +258,7 @@ static adcgs_status open_log(adcgs_enc_watcher *w, adcgs_error *error)
 
 #define EARLY "interrupted before training began: there is no state to save\n"
 
-static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcgs_error *error)
+static adcgs_status run(adcgs_enc_job *job, adcgs_enc_context *w, int *met, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
     adcgs_scene_options scene = { .points_path = o->points, .dataset = o->dataset };
@@ -270,21 +270,21 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     if (!follows)
         ADCGS_TRY(open_log(w, error));
     if (o->plan)
-        return o->has_segment ? adcgs_enc_plan_learn(w, job, error) : adcgs_enc_plan_make(job, &scene, error);
+        return o->has_segment ? adcgs_enc_plan_train(w, job, error) : adcgs_enc_plan_make(job, &scene, error);
     if (o->live)
         return adcgs_enc_live(w, job, error);
     ADCGS_TRY(name_base(w, error));
     adcgs_interrupt_word(isatty(STDERR_FILENO) ? "\nadcgs-enc: " EARLY : "adcgs-enc: " EARLY);
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
     if (!follows)
-        adcgs_enc_tell_remarks(job->cli, job->scene);
+        adcgs_enc_report_remarks(job->cli, job->scene);
     adcgs_progress_show(&w->progress, "scene   %u training view%s, read in %.0f s",
                         job->scene->n_views[ADCGS_SPLIT_TRAIN], adcgs_s(job->scene->n_views[ADCGS_SPLIT_TRAIN]),
                         adcgs_seconds() - o->started.clock);
     if (w->preview.path)
         ADCGS_TRY(adcgs_enc_preview_begin(o->preview, job->scene, error));
     adcgs_enc_reduce_large(job, job->scene, &w->progress);
-    ADCGS_TRY(adcgs_enc_even_light(job, &w->progress, error));
+    ADCGS_TRY(adcgs_enc_compensate_light(job, &w->progress, error));
     ADCGS_TRY(adcgs_enc_try(job, w, error));
     ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
     if (o->has_segment)
@@ -301,7 +301,7 @@ static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, con
                            adcgs_error *error)
 {
     adcgs_enc_job job = { .cli = cli, .o = o, .ranks = ranks->size > 1 ? ranks : NULL, .pool = pool };
-    adcgs_enc_watcher w = { .o = o, .target = o->plan ? o->plan : o->beginning ? o->beginning : o->output,
+    adcgs_enc_context w = { .o = o, .target = o->plan ? o->plan : o->beginning ? o->beginning : o->output,
                             .keeps = o->checkpoint || o->plan, .preview = { .path = ranks->rank ? NULL : o->preview } };
     adcgs_progress_init(&w.progress, cli);
     adcgs_progress_keep(&w.progress);

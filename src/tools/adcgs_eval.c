@@ -160,7 +160,7 @@ static adcgs_status compare_views(report *r, adcgs_decoder *decoder, const adcgs
         adcgs_evaluate(&e, decoder, scene, (adcgs_split)r->set->split, r->set->measure, on_view, r, error);
     adcgs_progress_clear(&r->progress);
     ADCGS_TRY(status);
-    adcgs_match_say(&match, &e);
+    adcgs_match_report(&match, &e);
     return adcgs_eval_report_end(&r->out, &e, error);
 }
 

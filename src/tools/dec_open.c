@@ -66,7 +66,7 @@ static adcgs_status open_url(adcgs_decoder **decoder, adcgs_http **http, const c
     return status;
 }
 
-adcgs_status adcgs_dec_tell_joined(const adcgs_cli *cli, const adcgs_decoder *decoder, const char *name, adcgs_error *error)
+adcgs_status adcgs_dec_report_tune_in(const adcgs_cli *cli, const adcgs_decoder *decoder, const char *name, adcgs_error *error)
 {
     adcgs_info info;
     ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
@@ -84,7 +84,7 @@ static adcgs_status open_pipe(adcgs_decoder **decoder, const adcgs_dec_open_conf
     const adcgs_status status = open_in_order(decoder, adcgs_file_read, stdin, &joining, error);
     if (status != ADCGS_OK)
         adcgs_error_locate(error, "standard input");
-    return status == ADCGS_OK ? adcgs_dec_tell_joined(how->cli, *decoder, "standard input", error) : status;
+    return status == ADCGS_OK ? adcgs_dec_report_tune_in(how->cli, *decoder, "standard input", error) : status;
 }
 
 adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_http **http, const char *input, const adcgs_dec_open_config *how,

@@ -22,6 +22,6 @@ adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_http **http, const ch
                             adcgs_error *error);
 
 /** Prints a remark if the decoder tuned in after the stream's beginning (config.tune_in). */
-adcgs_status adcgs_dec_tell_joined(const adcgs_cli *cli, const adcgs_decoder *decoder, const char *name, adcgs_error *error);
+adcgs_status adcgs_dec_report_tune_in(const adcgs_cli *cli, const adcgs_decoder *decoder, const char *name, adcgs_error *error);
 
 #endif

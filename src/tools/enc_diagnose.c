@@ -25,14 +25,14 @@ typedef struct tally {
 /** The tallies of all cameras, and the number of earlier interrupts. */
 typedef struct tallies {
     tally of[VIEWS];
-    int heard;
+    int interrupts;
 } tallies;
 
 static adcgs_status count(void *user, const adcgs_view_score *score, adcgs_error *error)
 {
     tallies *const all = user;
     tally *const t = &all->of[score->camera];
-    if (adcgs_interrupts() > all->heard)
+    if (adcgs_interrupts() > all->interrupts)
         return adcgs_fail(error, ADCGS_ERR_IO, "interrupted");
     t->sum += score->fitted_psnr;
     t->name = t->n++ ? t->name : score->view->camera.name;
@@ -54,12 +54,12 @@ static void say_odd(const adcgs_cli *cli, const tally *list, int cameras, const 
                            list[i].name, mean[i], median);
 }
 
-void adcgs_enc_doubt(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_scene *scene, double unseen, const char *file,
-                     int heard)
+void adcgs_enc_diagnose(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_scene *scene, double unseen, const char *file,
+                        int interrupts)
 {
     const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN], n = ADCGS_MIN(all, VIEWS);
     adcgs_scene_view picked[VIEWS];
-    tallies found = {.heard = heard};
+    tallies found = {.interrupts = interrupts};
     adcgs_scene some = *scene;
     adcgs_evaluation mean;
     adcgs_error error;

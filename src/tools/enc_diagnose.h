@@ -14,7 +14,7 @@
  * if there are none), and too few cameras. A view that cannot be measured ends the check without a message, and so does an
  * interrupt beyond the earlier ones.
  */
-void adcgs_enc_doubt(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_scene *scene, double unseen, const char *file,
-                     int heard);
+void adcgs_enc_diagnose(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_scene *scene, double unseen, const char *file,
+                        int interrupts);
 
 #endif

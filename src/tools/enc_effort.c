@@ -45,7 +45,7 @@ void adcgs_enc_effort_choose(adcgs_enc_effort *e, adcgs_enc_job *job, double cam
     say(e, job, number, left);
 }
 
-void adcgs_enc_effort_learn(adcgs_enc_effort *e, const adcgs_train_report *first, const adcgs_train_report *last, double seconds)
+void adcgs_enc_effort_train(adcgs_enc_effort *e, const adcgs_train_report *first, const adcgs_train_report *last, double seconds)
 {
     const double taken = last->spent.clock - first->spent.clock;
     if (!(taken > 0) || last->iteration <= first->iteration)

@@ -25,7 +25,7 @@ void adcgs_enc_effort_init(adcgs_enc_effort *effort, adcgs_enc_job *job);
  */
 void adcgs_enc_effort_choose(adcgs_enc_effort *effort, adcgs_enc_job *job, double came, double seconds, uint32_t number);
 /** Updates the speed from a segment: the reports after its first and its last iteration, and its total time. */
-void adcgs_enc_effort_learn(adcgs_enc_effort *effort, const adcgs_train_report *first, const adcgs_train_report *last,
+void adcgs_enc_effort_train(adcgs_enc_effort *effort, const adcgs_train_report *first, const adcgs_train_report *last,
                             double seconds);
 
 #endif

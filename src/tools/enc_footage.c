@@ -80,7 +80,7 @@ static void say_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcg
                    is_evened ? "this and all other steps of light are evened out" : question);
 }
 
-void adcgs_enc_tell_evened(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *light)
+void adcgs_enc_report_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *light)
 {
     if (light->cameras)
         say_light(cli, scene, light, 0, 1);
@@ -154,27 +154,27 @@ static void look_at_poses(const adcgs_cli *cli, const adcgs_scene *scene, const 
 }
 
 /** Reports faults of the images, each kind once. */
-static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_scene *whole, const adcgs_tracks *tracks,
-                             const adcgs_glance *glances, double begins, unsigned *told)
+static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_scene *whole,
+                             const adcgs_camera_order *tracks, const adcgs_thumbnail *thumbnails, double begins, unsigned *told)
 {
     const adcgs_scene_view *const views = scene->views[ADCGS_SPLIT_TRAIN];
     adcgs_fault f;
     adcgs_error error;
-    if (!(*told & COPIED) && adcgs_fault_copied(&f, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
+    if (!(*told & COPIED) && adcgs_fault_copied(&f, views, tracks, thumbnails, &error) == ADCGS_OK && f.cameras) {
         say_copied(cli, whole, &f, begins);
         *told |= COPIED;
     }
-    if (!(*told & LIGHT) && adcgs_fault_light(&f, NULL, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
+    if (!(*told & LIGHT) && adcgs_fault_light(&f, NULL, views, tracks, thumbnails, &error) == ADCGS_OK && f.cameras) {
         say_light(cli, whole, &f, begins, 0);
         *told |= LIGHT;
     }
-    if (!(*told & CLOCKS) && adcgs_fault_clocks(&f, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
+    if (!(*told & CLOCKS) && adcgs_fault_clocks(&f, views, tracks, thumbnails, &error) == ADCGS_OK && f.cameras) {
         say_clocks(cli, whole, &f);
         *told |= CLOCKS;
     }
 }
 
-void adcgs_enc_tell_remarks(const adcgs_cli *cli, const adcgs_scene *scene)
+void adcgs_enc_report_remarks(const adcgs_cli *cli, const adcgs_scene *scene)
 {
     for (int i = 0; i < scene->n_remarks; i++)
         adcgs_cli_note(cli, "%s", scene->remarks[i]);
@@ -187,13 +187,13 @@ static void say_times(const adcgs_cli *cli, const adcgs_scene *scene)
                         "adcgs-import makes a scene with times", scene->directory);
 }
 
-void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo *found,
-                             const adcgs_fault *doubled, adcgs_pool *pool, const adcgs_glance *glances, double begins,
-                             unsigned *told)
+void adcgs_enc_diagnose_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo *found,
+                                const adcgs_fault *doubled, adcgs_pool *pool, const adcgs_thumbnail *thumbnails, double begins,
+                                unsigned *told)
 {
     const adcgs_scene *const whole = scene->whole ? scene->whole : scene;
     adcgs_fault gaps;
-    adcgs_tracks tracks;
+    adcgs_camera_order tracks;
     adcgs_error error;
     if (!(*told & GAPS) && adcgs_fault_gaps(&gaps, whole, &error) == ADCGS_OK && gaps.cameras)
         say_gaps(cli, whole, &gaps);
@@ -205,8 +205,8 @@ void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, con
         say_doubled(cli, whole, doubled, begins);
         *told |= DOUBLED;
     }
-    if (adcgs_tracks_find(&tracks, scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN], &error) != ADCGS_OK)
+    if (adcgs_camera_order_find(&tracks, scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN], &error) != ADCGS_OK)
         return;
-    look_at_pictures(cli, scene, whole, &tracks, glances, begins, told);
-    adcgs_tracks_clear(&tracks);
+    look_at_pictures(cli, scene, whole, &tracks, thumbnails, begins, told);
+    adcgs_camera_order_clear(&tracks);
 }

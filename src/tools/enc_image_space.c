@@ -22,7 +22,7 @@ static const char *show_bytes(uint64_t bytes, char text[24])
     return text;
 }
 
-static void tell(const adcgs_enc_watcher *w, const adcgs_pictures_need *need, const char *folder)
+static void tell(const adcgs_enc_context *w, const adcgs_image_store_need *need, const char *folder)
 {
     char all[24], memory[24], file[24], room[24];
     const adcgs_cli *const cli = w->progress.cli;
@@ -39,14 +39,15 @@ static void tell(const adcgs_enc_watcher *w, const adcgs_pictures_need *need, co
                        need->again, need->n);
 }
 
-adcgs_status adcgs_enc_tell_room(adcgs_enc_watcher *w, adcgs_error *error)
+adcgs_status adcgs_enc_report_space(adcgs_enc_context *w, adcgs_error *error)
 {
     const adcgs_trainer *const t = w->t;
-    const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = t->config.scale, .memory = t->picture_memory };
-    adcgs_pictures_need need;
+    const adcgs_image_store_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = t->config.scale,
+                                             .memory = t->picture_memory };
+    adcgs_image_store_need need;
     if (w->told_room)
         return ADCGS_OK;
-    ADCGS_TRY(adcgs_pictures_foresee(&need, t->scene, &config, error));
+    ADCGS_TRY(adcgs_image_store_estimate(&need, t->scene, &config, error));
     char *const folder = adcgs_spool_folder();
     if (folder && need.memory < need.bytes) {
         adcgs_progress_clear(&w->progress);
@@ -57,10 +58,10 @@ adcgs_status adcgs_enc_tell_room(adcgs_enc_watcher *w, adcgs_error *error)
     return ADCGS_OK;
 }
 
-void adcgs_enc_tell_no_room(adcgs_enc_watcher *w)
+void adcgs_enc_report_no_space(adcgs_enc_context *w)
 {
     const char *why;
-    const uint32_t n = w->t->pictures ? adcgs_pictures_decoded_again(w->t->pictures, &why) : 0;
+    const uint32_t n = w->t->pictures ? adcgs_image_store_decoded_again(w->t->pictures, &why) : 0;
     if (!n || w->told_room == 2)
         return;
     adcgs_progress_clear(&w->progress);

@@ -9,8 +9,8 @@
  * Reports the space of the run's images at full size, if they do not all fit into memory; once. Decodes an image or two in that
  * case.
  */
-adcgs_status adcgs_enc_tell_room(adcgs_enc_watcher *w, adcgs_error *error);
+adcgs_status adcgs_enc_report_space(adcgs_enc_context *w, adcgs_error *error);
 /** Reports loaded images without space that was not foreseen to be missing. Once. */
-void adcgs_enc_tell_no_room(adcgs_enc_watcher *w);
+void adcgs_enc_report_no_space(adcgs_enc_context *w);
 
 #endif

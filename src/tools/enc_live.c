@@ -26,7 +26,7 @@
 #define ANCHORS_MARGIN 2 /* HEAD allows this multiple of the budget */
 
 typedef struct live_run {
-    adcgs_enc_watcher *w;
+    adcgs_enc_context *w;
     adcgs_enc_job *job;
     adcgs_train_config asked; /* the configuration before it is fitted to the input */
     adcgs_live *live;
@@ -34,7 +34,7 @@ typedef struct live_run {
     adcgs_encode_live stream;
     adcgs_enc_live_file file;
     adcgs_claim *claim; /* on the file; NULL: a pipe */
-    adcgs_enc_live_past past; /* the stream to continue */
+    adcgs_enc_live_resume past; /* the stream to continue */
     adcgs_buffer bytes;   /* of the current segment */
     int is_open;          /* the stream has a segment */
     double key;           /* seconds at which the last key began */
@@ -77,7 +77,7 @@ static adcgs_status begin_stream(live_run *r, adcgs_error *error)
     const adcgs_enc_job *job = r->job;
     const uint32_t times = adcgs_live_times(r->live, NULL);
     adcgs_enc_notes n;
-    adcgs_enc_take_notes(&n, r->w->t, (const char *)r->w->changes.data);
+    adcgs_enc_make_notes(&n, r->w->t, (const char *)r->w->changes.data);
     r->is_open = 1;
     r->sum.streams++;
     adcgs_cuts cuts = { .n = times - 1, .at = adcgs_alloc(NULL, times, sizeof *cuts.at, error) };
@@ -141,7 +141,7 @@ static int is_to_follow(const live_run *r)
 
 static adcgs_status learn_segment(live_run *r, adcgs_error *error)
 {
-    adcgs_enc_watcher *w = r->w;
+    adcgs_enc_context *w = r->w;
     const int follows = is_to_follow(r);
     const adcgs_model *before = r->is_open ? &r->stream.model : NULL;
     const double started = adcgs_seconds();
@@ -151,10 +151,10 @@ static adcgs_status learn_segment(live_run *r, adcgs_error *error)
     w->next_log = 0;
     w->first = w->last = (adcgs_train_report){ .iteration = 0 };
     adcgs_enc_effort_choose(&r->effort, r->job, r->segment.came, r->segment.end - r->segment.begin, w->segment);
-    ADCGS_TRY(adcgs_enc_learn(w, r->job, r->segment.scene, follows ? before : NULL, before, NULL, (adcgs_time){ 0, 0 },
+    ADCGS_TRY(adcgs_enc_train(w, r->job, r->segment.scene, follows ? before : NULL, before, NULL, (adcgs_time){ 0, 0 },
                               error));
     ADCGS_TRY(write_segment(r, w->t->f->follows, error));
-    adcgs_enc_effort_learn(&r->effort, &w->first, &w->last, adcgs_seconds() - started);
+    adcgs_enc_effort_train(&r->effort, &w->first, &w->last, adcgs_seconds() - started);
     adcgs_enc_live_sum_add(&r->sum, r->segment.begin, r->segment.end, r->segment.came, w->last.iteration);
     return ADCGS_OK;
 }
@@ -173,8 +173,8 @@ static void tell_missing(live_run *r)
 static adcgs_status take_past(live_run *r, adcgs_live_options *options, adcgs_error *error)
 {
     const adcgs_model *const last = &r->past.last;
-    ADCGS_TRY(adcgs_enc_live_past_take(&r->past, &r->stream, &r->file, ANCHORS_MARGIN * r->job->config.max_anchors, r->job,
-                                       error));
+    ADCGS_TRY(adcgs_enc_live_resume_read(&r->past, &r->stream, &r->file, ANCHORS_MARGIN * r->job->config.max_anchors, r->job,
+                                         error));
     options->last[0] = last->time_start;
     options->last[1] = last->time_end;
     memcpy(options->origin, r->stream.front.scene_origin, sizeof options->origin);
@@ -188,7 +188,7 @@ static adcgs_status go_on(live_run *r, adcgs_error *error)
     const double begin = r->segment.scene ? r->segment.begin : INFINITY, end = r->past.last.time_end;
     if (r->segment.scene)
         ADCGS_TRY(adcgs_encode_live_check(&r->stream, adcgs_live_whole(r->live), error));
-    ADCGS_TRY(adcgs_enc_live_past_end(&r->past, &r->stream, &r->file, begin, error));
+    ADCGS_TRY(adcgs_enc_live_resume_end(&r->past, &r->stream, &r->file, begin, error));
     r->key = r->past.key;
     r->sum.bytes = r->past.bytes;
     r->sum.past = r->past.n;
@@ -268,7 +268,7 @@ static adcgs_status run(live_run *r, adcgs_error *error)
     return adcgs_enc_live_sum_print(&r->sum, r->job, error);
 }
 
-adcgs_status adcgs_enc_live(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_error *error)
+adcgs_status adcgs_enc_live(adcgs_enc_context *w, adcgs_enc_job *job, adcgs_error *error)
 {
     live_run r = { .w = w, .job = job };
     if (job->config.exposure_step_compensation)
@@ -282,7 +282,7 @@ adcgs_status adcgs_enc_live(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_erro
     const adcgs_status status = run(&r, error);
     adcgs_live_segment_clear(&r.segment);
     adcgs_encode_live_clear(&r.stream);
-    adcgs_enc_live_past_clear(&r.past);
+    adcgs_enc_live_resume_clear(&r.past);
     adcgs_trainer_free(&w->t); /* before the scene that it uses */
     adcgs_live_close(&r.live);
     adcgs_enc_live_file_close(&r.file);

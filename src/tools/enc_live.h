@@ -9,6 +9,6 @@
  * Trains and writes the incoming footage until it ends. The job has options and configuration, but no scene. After a failure the
  * segments so far are ended as a stream. If that fails, as on a full disk, the output ends with the last complete segment.
  */
-adcgs_status adcgs_enc_live(adcgs_enc_watcher *watcher, adcgs_enc_job *job, adcgs_error *error);
+adcgs_status adcgs_enc_live(adcgs_enc_context *context, adcgs_enc_job *job, adcgs_error *error);
 
 #endif

@@ -88,7 +88,7 @@ static adcgs_status settle(const char *path, const adcgs_buffer *head, adcgs_err
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read it back: %s", path, strerror(errno));
     adcgs_status status = adcgs_atomic_open(&to, path, error);
     if (status == ADCGS_OK)
-        status = adcgs_encode_settle(to.file, from, head->data, head->size, path, error);
+        status = adcgs_encode_replace_head(to.file, from, head->data, head->size, path, error);
     fclose(from);
     if (status == ADCGS_OK)
         return adcgs_atomic_commit(&to, error);

@@ -147,7 +147,7 @@ adcgs_status adcgs_enc_plan_make(adcgs_enc_job *job, const adcgs_scene_options *
 {
     adcgs_plan plan = { .dataset = 0 };
     ADCGS_TRY(adcgs_scene_open(&job->scene, job->o->scene, options, error));
-    adcgs_enc_tell_remarks(job->cli, job->scene);
+    adcgs_enc_report_remarks(job->cli, job->scene);
     adcgs_enc_reduce_large(job, job->scene, NULL);
     ADCGS_TRY(adcgs_enc_cut(job, job->o->cut, error));
     const adcgs_status status = make(&plan, job, options, error);
@@ -181,7 +181,7 @@ static adcgs_status open_scene(adcgs_enc_job *job, const adcgs_plan *p, adcgs_er
 }
 
 /** Takes the training settings of the plan. The job borrows its cuts. */
-static adcgs_status take_settings(adcgs_enc_watcher *w, adcgs_enc_job *job, const adcgs_plan *p, adcgs_error *error)
+static adcgs_status take_settings(adcgs_enc_context *w, adcgs_enc_job *job, const adcgs_plan *p, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_plan_check_version(p, job->o->plan, error));
     if (adcgs_cpu_resolve(p->cpu, &job->cpu, error) != ADCGS_OK)
@@ -209,7 +209,7 @@ static adcgs_status take_settings(adcgs_enc_watcher *w, adcgs_enc_job *job, cons
     return ADCGS_OK;
 }
 
-static adcgs_status report(const adcgs_enc_job *job, const adcgs_enc_watcher *w, adcgs_time spent, const char *name,
+static adcgs_status report(const adcgs_enc_job *job, const adcgs_enc_context *w, adcgs_time spent, const char *name,
                            adcgs_error *error)
 {
     adcgs_json j;
@@ -235,7 +235,7 @@ static adcgs_status report(const adcgs_enc_job *job, const adcgs_enc_watcher *w,
 }
 
 /** Trains the segment, unless it is present already. */
-static adcgs_status learn(adcgs_enc_watcher *w, adcgs_enc_job *job, const char *name, adcgs_error *error)
+static adcgs_status learn(adcgs_enc_context *w, adcgs_enc_job *job, const char *name, adcgs_error *error)
 {
     adcgs_stream there;
     adcgs_time spent = { 0, 0 };
@@ -249,13 +249,13 @@ static adcgs_status learn(adcgs_enc_watcher *w, adcgs_enc_job *job, const char *
     if (status == ADCGS_OK)
         status = open_scene(job, job->plan, error);
     if (status == ADCGS_OK)
-        status = adcgs_enc_even_light(job, &w->progress, error);
+        status = adcgs_enc_compensate_light(job, &w->progress, error);
     if (status == ADCGS_OK)
-        status = adcgs_enc_segment_learn(w, job, &spent, error);
+        status = adcgs_enc_segment_train(w, job, &spent, error);
     return status == ADCGS_OK ? report(job, w, spent, name, error) : status;
 }
 
-static adcgs_status learn_claimed(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_error *error)
+static adcgs_status learn_claimed(adcgs_enc_context *w, adcgs_enc_job *job, adcgs_error *error)
 {
     adcgs_claim *claim = NULL;
     char *name, *claimed = NULL, what[64];
@@ -274,7 +274,7 @@ static adcgs_status learn_claimed(adcgs_enc_watcher *w, adcgs_enc_job *job, adcg
     return status;
 }
 
-adcgs_status adcgs_enc_plan_learn(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_error *error)
+adcgs_status adcgs_enc_plan_train(adcgs_enc_context *w, adcgs_enc_job *job, adcgs_error *error)
 {
     adcgs_plan plan = { .dataset = 0 };
     adcgs_status status = adcgs_plan_read(&plan, job->o->plan, error);

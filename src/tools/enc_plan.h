@@ -19,6 +19,6 @@ adcgs_status adcgs_enc_plan_make(adcgs_enc_job *job, const adcgs_scene_options *
  * Trains segment job->o->segment, from 1, as planned: from its checkpoint if there is one, and from the previous part if it
  * follows one. Reads only the segment's own images. Does nothing if the part is present already.
  */
-adcgs_status adcgs_enc_plan_learn(adcgs_enc_watcher *watcher, adcgs_enc_job *job, adcgs_error *error);
+adcgs_status adcgs_enc_plan_train(adcgs_enc_context *context, adcgs_enc_job *job, adcgs_error *error);
 
 #endif

@@ -29,7 +29,7 @@ static adcgs_status draw(float *image, adcgs_trainer *t, const adcgs_scene_view 
     adcgs_view view;
     ADCGS_TRY(adcgs_view_init(&view, camera, t->origin, t->scale, error));
     adcgs_pass_forward(t->pass, t->f, adcgs_trainer_time(t, of->time), &mode);
-    return adcgs_view_draw(t, &view, ADCGS_MEAN_LIGHT, image, 0, error);
+    return adcgs_view_render(t, &view, ADCGS_MEAN_LIGHT, image, 0, error);
 }
 
 static adcgs_status place(adcgs_mosaic *mosaic, adcgs_trainer *t, const adcgs_scene_view *view, const adcgs_camera *camera,

@@ -33,7 +33,7 @@ adcgs_status adcgs_rank_fail(const adcgs_enc_job *job, adcgs_error *error)
     return adcgs_fail(error, why.status, "rank %d on %s: %.160s", job->ranks->rank, job->ranks->host, why.text);
 }
 
-static void take_report(adcgs_rank_note *n, const adcgs_enc_watcher *w)
+static void take_report(adcgs_rank_note *n, const adcgs_enc_context *w)
 {
     n->segment = w->segment;
     n->iteration = w->last.iteration;
@@ -44,7 +44,7 @@ static void take_report(adcgs_rank_note *n, const adcgs_enc_watcher *w)
 }
 
 /** Trains the note's segment. The first rank of a team informs the others. A failure names the rank and its segment. */
-static adcgs_status learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_rank_note *n, adcgs_error *error)
+static adcgs_status learn(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_rank_note *n, adcgs_error *error)
 {
     n->spent = (adcgs_time){ 0, 0 };
     n->kind = ADCGS_RANK_LEARN;
@@ -52,7 +52,7 @@ static adcgs_status learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_
         adcgs_ranks_send(job->ranks, w->team.first + r, n, sizeof *n);
     adcgs_status status = adcgs_enc_segment_begin(w, n->segment, error);
     if (status == ADCGS_OK)
-        status = adcgs_enc_segment_learn(w, job, &n->spent, error);
+        status = adcgs_enc_segment_train(w, job, &n->spent, error);
     take_report(n, w);
     n->kind = ADCGS_RANK_DONE;
     const adcgs_error why = *error;
@@ -68,7 +68,7 @@ typedef struct follower {
     double told; /* time of the last progress note */
 } follower;
 
-static int tell(void *user, const adcgs_enc_watcher *w)
+static int tell(void *user, const adcgs_enc_context *w)
 {
     follower *f = user;
     const double now = adcgs_seconds();
@@ -81,19 +81,19 @@ static int tell(void *user, const adcgs_enc_watcher *w)
     return 0;
 }
 
-int adcgs_rank_hear_nothing(void *user, const adcgs_enc_watcher *w)
+int adcgs_rank_ignore_progress(void *user, const adcgs_enc_context *w)
 {
     (void)user;
     (void)w;
     return 0;
 }
 
-adcgs_status adcgs_rank_follow(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
+adcgs_status adcgs_rank_follow(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_error *error)
 {
     const int leads = !w->team.team.rank && w->team.team.size; /* a team, or trains alone */
     follower f = { .ranks = job->ranks, .last = adcgs_rank_say(ADCGS_RANK_READY, job) };
-    w->hear = leads ? tell : adcgs_rank_hear_nothing;
-    w->hear_user = &f;
+    w->on_progress = leads ? tell : adcgs_rank_ignore_progress;
+    w->progress_user = &f;
     w->segments = job->cuts.n;
     adcgs_interrupt_catch(1);
     if (leads)
@@ -118,9 +118,9 @@ adcgs_status adcgs_rank_follow(adcgs_enc_watcher *w, const adcgs_enc_job *job, a
 
 /* ---- Training in rank 0, next to handing out ---- */
 
-static int hear(void *user, const adcgs_enc_watcher *w)
+static int on_progress(void *user, const adcgs_enc_context *w)
 {
-    adcgs_rank_learner *l = user;
+    adcgs_rank_trainer *l = user;
     pthread_mutex_lock(&l->lock);
     l->last.kind = ADCGS_RANK_TOLD;
     take_report(&l->last, w);
@@ -131,7 +131,7 @@ static int hear(void *user, const adcgs_enc_watcher *w)
 
 static void *run_learner(void *user)
 {
-    adcgs_rank_learner *l = user;
+    adcgs_rank_trainer *l = user;
     pthread_mutex_lock(&l->lock);
     for (;;) {
         while (!l->asked && !l->ends)
@@ -151,12 +151,12 @@ static void *run_learner(void *user)
     return NULL;
 }
 
-adcgs_status adcgs_rank_start(adcgs_rank_learner *l, adcgs_error *error)
+adcgs_status adcgs_rank_start(adcgs_rank_trainer *l, adcgs_error *error)
 {
     pthread_mutex_init(&l->lock, NULL);
     pthread_cond_init(&l->wake, NULL);
-    l->w->hear = hear;
-    l->w->hear_user = l;
+    l->w->on_progress = on_progress;
+    l->w->progress_user = l;
     if (!pthread_create(&l->thread, NULL, run_learner, l))
         return ADCGS_OK;
     pthread_mutex_destroy(&l->lock);
@@ -164,7 +164,7 @@ adcgs_status adcgs_rank_start(adcgs_rank_learner *l, adcgs_error *error)
     return adcgs_fail(error, ADCGS_ERR_MEMORY, "cannot start a thread for training");
 }
 
-void adcgs_rank_give(adcgs_rank_learner *l, const adcgs_rank_note *n)
+void adcgs_rank_give(adcgs_rank_trainer *l, const adcgs_rank_note *n)
 {
     pthread_mutex_lock(&l->lock);
     l->last = *n;
@@ -173,7 +173,7 @@ void adcgs_rank_give(adcgs_rank_learner *l, const adcgs_rank_note *n)
     pthread_mutex_unlock(&l->lock);
 }
 
-adcgs_status adcgs_rank_ask(adcgs_rank_learner *l, adcgs_rank_note *n, int *is_done, adcgs_error *error)
+adcgs_status adcgs_rank_ask(adcgs_rank_trainer *l, adcgs_rank_note *n, int *is_done, adcgs_error *error)
 {
     pthread_mutex_lock(&l->lock);
     *n = l->last;
@@ -186,7 +186,7 @@ adcgs_status adcgs_rank_ask(adcgs_rank_learner *l, adcgs_rank_note *n, int *is_d
     return l->status;
 }
 
-void adcgs_rank_end(adcgs_rank_learner *l)
+void adcgs_rank_end(adcgs_rank_trainer *l)
 {
     pthread_mutex_lock(&l->lock);
     l->ends = 1;
@@ -195,5 +195,5 @@ void adcgs_rank_end(adcgs_rank_learner *l)
     pthread_join(l->thread, NULL);
     pthread_mutex_destroy(&l->lock);
     pthread_cond_destroy(&l->wake);
-    l->w->hear = NULL;
+    l->w->on_progress = NULL;
 }

@@ -27,13 +27,13 @@ void adcgs_rank_nap(void);
 /** Returns the same failure with the rank's name, for a run that is not cut. */
 adcgs_status adcgs_rank_fail(const adcgs_enc_job *job, adcgs_error *error);
 /** For the ranks of a team except the first, which report nothing. */
-int adcgs_rank_hear_nothing(void *user, const adcgs_enc_watcher *watcher);
+int adcgs_rank_ignore_progress(void *user, const adcgs_enc_context *context);
 /** Trains the segments from rank 0, or from the first rank of the team, until rank 0 has no more. */
-adcgs_status adcgs_rank_follow(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, adcgs_error *error);
+adcgs_status adcgs_rank_follow(adcgs_enc_context *context, const adcgs_enc_job *job, adcgs_error *error);
 
 /** Rank 0's own training, in a thread next to the one that hands out segments. Both threads use the members below the lock. */
-typedef struct adcgs_rank_learner {
-    adcgs_enc_watcher *w;
+typedef struct adcgs_rank_trainer {
+    adcgs_enc_context *w;
     const adcgs_enc_job *job;
     pthread_t thread;
     pthread_mutex_t lock;
@@ -42,15 +42,15 @@ typedef struct adcgs_rank_learner {
     adcgs_rank_note last;
     adcgs_status status;
     adcgs_error error;
-} adcgs_rank_learner;
+} adcgs_rank_trainer;
 
 /** w and job are set, all others zero. */
-adcgs_status adcgs_rank_start(adcgs_rank_learner *learner, adcgs_error *error);
+adcgs_status adcgs_rank_start(adcgs_rank_trainer *learner, adcgs_error *error);
 /** Starts training of the note's segment; the learner has to be idle. */
-void adcgs_rank_give(adcgs_rank_learner *learner, const adcgs_rank_note *note);
+void adcgs_rank_give(adcgs_rank_trainer *learner, const adcgs_rank_note *note);
 /** Returns the learner's note: its progress, or once that it is done. */
-adcgs_status adcgs_rank_ask(adcgs_rank_learner *learner, adcgs_rank_note *note, int *is_done, adcgs_error *error);
+adcgs_status adcgs_rank_ask(adcgs_rank_trainer *learner, adcgs_rank_note *note, int *is_done, adcgs_error *error);
 /** Stops the training, which saves its state, and ends the thread. */
-void adcgs_rank_end(adcgs_rank_learner *learner);
+void adcgs_rank_end(adcgs_rank_trainer *learner);
 
 #endif

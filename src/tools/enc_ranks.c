@@ -22,7 +22,7 @@
 typedef enum state { MISSING, BEGUN, FINISHED } state;
 
 typedef struct leader {
-    adcgs_enc_watcher *w;
+    adcgs_enc_context *w;
     const adcgs_enc_job *job;
     const adcgs_ranks *ranks;
     state *states;         /* [segments] */
@@ -31,7 +31,7 @@ typedef struct leader {
     uint32_t done;
     adcgs_rank_note final; /* of the last segment */
     adcgs_time *spent;
-    adcgs_rank_learner own;
+    adcgs_rank_trainer own;
     adcgs_progress progress;
 } leader;
 
@@ -82,7 +82,7 @@ static void say_idle(const adcgs_enc_job *job)
                                  "more", batch, busy, ranks);
 }
 
-adcgs_status adcgs_enc_ranks_gather(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
+adcgs_status adcgs_enc_ranks_gather(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_error *error)
 {
     if (!job->ranks || job->o->finish) /* it trains nothing */
         return ADCGS_OK;
@@ -94,7 +94,7 @@ adcgs_status adcgs_enc_ranks_gather(adcgs_enc_watcher *w, const adcgs_enc_job *j
 /** Reports that rank 0 was interrupted while it waits for a rank of its team, which may have ended. */
 static void say_late(void *user, int rank, const char *host)
 {
-    adcgs_enc_watcher *w = user;
+    adcgs_enc_context *w = user;
     const int keeps = !access(w->state, F_OK);
     adcgs_progress_clear(&w->progress);
     adcgs_cli_error(w->progress.cli, ADCGS_OK, "interrupted at iteration %u, waiting for rank %d on %s; %s%s", w->last.iteration,
@@ -102,12 +102,12 @@ static void say_late(void *user, int rank, const char *host)
                     keeps ? w->state : "");
 }
 
-void adcgs_enc_ranks_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job)
+void adcgs_enc_ranks_whole(adcgs_enc_context *w, const adcgs_enc_job *job)
 {
     if (!job->ranks || job->o->finish)
         return;
     if (job->ranks->rank) {
-        w->hear = adcgs_rank_hear_nothing;
+        w->on_progress = adcgs_rank_ignore_progress;
         return;
     }
     w->team.late = say_late;
@@ -209,7 +209,7 @@ static void show(leader *l)
                                    l->job->config.iterations);
     }
     adcgs_progress_show(&l->progress, "segments  %u/%u%s%s  %.0f it/s%s", l->done, l->job->cuts.n, text, n > SHOWN ? "  ..." : "",
-                        rate, adcgs_enc_left(rate > 0 ? fmax(iterations, 0) / rate : (double)NAN, left));
+                        rate, adcgs_enc_format_eta(rate > 0 ? fmax(iterations, 0) / rate : (double)NAN, left));
 }
 
 /** Reports all ranks with their segments in one line, since the signal's sender has named at most one. */
@@ -258,7 +258,7 @@ static adcgs_status find_done(leader *l, adcgs_error *error)
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_enc_ranks_lead(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+adcgs_status adcgs_enc_ranks_lead(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
 {
     const adcgs_ranks *const ranks = job->ranks;
     leader l = { .w = w, .job = job, .ranks = ranks, .spent = spent, .own = { .w = w, .job = job } };

@@ -15,12 +15,12 @@
 int adcgs_enc_ranks_threads(const adcgs_ranks *ranks);
 
 /** For any participating rank, once the number of segments is known: forms the teams that train together (enc_team.h). */
-adcgs_status adcgs_enc_ranks_gather(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, adcgs_error *error);
+adcgs_status adcgs_enc_ranks_gather(adcgs_enc_context *context, const adcgs_enc_job *job, adcgs_error *error);
 /** For a rank that trains a scene that is not cut: rank 0 reports for all. Does nothing without ranks. */
-void adcgs_enc_ranks_whole(adcgs_enc_watcher *watcher, const adcgs_enc_job *job);
+void adcgs_enc_ranks_whole(adcgs_enc_context *context, const adcgs_enc_job *job);
 
 /** For rank 0: trains all segments that are not present yet. Shows the progress of all ranks in one line. */
-adcgs_status adcgs_enc_ranks_lead(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error);
+adcgs_status adcgs_enc_ranks_lead(adcgs_enc_context *context, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error);
 /** For rank 0: dismisses the others. */
 void adcgs_enc_ranks_dismiss(const adcgs_ranks *ranks);
 

@@ -115,14 +115,14 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
 typedef struct counter {
     adcgs_progress progress;
     uint32_t done, n;
-    int heard;
+    int interrupts;
 } counter;
 
 static adcgs_status count_view(void *user, const adcgs_view_score *score, adcgs_error *error)
 {
     counter *c = user;
     (void)score;
-    if (adcgs_interrupts() > c->heard)
+    if (adcgs_interrupts() > c->interrupts)
         return adcgs_fail(error, ADCGS_ERR_IO, "interrupted after %u of %u view%s were measured", c->done, c->n, adcgs_s(c->n));
     adcgs_progress_show(&c->progress, "measured  %6u/%u", ++c->done, c->n);
     return ADCGS_OK;
@@ -133,7 +133,7 @@ static adcgs_status evaluate(adcgs_evaluation *out, const adcgs_cli *cli, adcgs_
                              adcgs_split split, adcgs_error *error)
 {
     const adcgs_scene *const scene = r->scene;
-    counter c = {.n = scene->n_views[split], .heard = r->heard};
+    counter c = {.n = scene->n_views[split], .interrupts = r->interrupts};
     adcgs_progress_init(&c.progress, cli);
     const adcgs_status status = adcgs_evaluate(out, decoder, scene, split, 0, count_view, &c, error);
     adcgs_progress_clear(&c.progress);
@@ -205,7 +205,7 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     *met = status != ADCGS_OK || x.target.met;
     if (status != ADCGS_OK)
         say_written(r, error);
-    if (status != ADCGS_OK && adcgs_interrupts() > r->heard && !r->json) {
+    if (status != ADCGS_OK && adcgs_interrupts() > r->interrupts && !r->json) {
         adcgs_close(&decoder);
         adcgs_cli_error(cli, ADCGS_OK, "%s", error->text);
         return ADCGS_OK;
@@ -217,7 +217,7 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     /* Test views keep their original light, so they do not match training views with evened light. */
     const int tells = x.split != ADCGS_SPLIT_TRAIN && !r->config->exposure_step_compensation;
     if (status == ADCGS_OK)
-        adcgs_enc_doubt(cli, decoder, r->scene, tells ? x.quality.psnr : (double)NAN, r->file, r->heard);
+        adcgs_enc_diagnose(cli, decoder, r->scene, tells ? x.quality.psnr : (double)NAN, r->file, r->interrupts);
     if (status == ADCGS_OK && !x.target.met)
         say_missed(cli, r, &x.target);
     adcgs_close(&decoder);

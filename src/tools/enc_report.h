@@ -15,7 +15,7 @@ typedef struct adcgs_enc_report {
     adcgs_time spent;        /**< on training, all segments together */
     size_t uncompressed;     /**< bytes of the file of plain numbers; 0: not requested */
     int threads, json; /**< as on the command line */
-    int heard;         /**< interrupts that the run has handled; one more ends the measurement */
+    int interrupts;    /**< interrupts that the run has handled; one more ends the measurement */
 } adcgs_enc_report;
 
 /**

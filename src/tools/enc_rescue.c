@@ -9,7 +9,7 @@
 
 #include <stdlib.h>
 
-int adcgs_enc_is_ready(const adcgs_enc_watcher *w)
+int adcgs_enc_is_ready(const adcgs_enc_context *w)
 {
     return w->o->output && !w->segments && w->t->iteration;
 }
@@ -23,7 +23,7 @@ static char *name_elsewhere(const char *name)
     return path;
 }
 
-adcgs_status adcgs_enc_save(const adcgs_enc_watcher *w, const char *name, int reads_images, char **path, adcgs_error *error)
+adcgs_status adcgs_enc_save(const adcgs_enc_context *w, const char *name, int reads_images, char **path, adcgs_error *error)
 {
     adcgs_error ignored;
     adcgs_status status = reads_images ? adcgs_trainer_save(w->t, name, error) : adcgs_trainer_rescue(w->t, name, error);
@@ -37,7 +37,7 @@ adcgs_status adcgs_enc_save(const adcgs_enc_watcher *w, const char *name, int re
     return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", name);
 }
 
-void adcgs_enc_say_how_to_go_on(const adcgs_cli *cli, const adcgs_enc_watcher *w, const char *what, const char *path)
+void adcgs_enc_report_continuation(const adcgs_cli *cli, const adcgs_enc_context *w, const char *what, const char *path)
 {
     const int is_elsewhere = strcmp(path, w->state) != 0;
     const char *const resume = w->o->plan ? "" : " and --resume ", *const base = w->o->plan ? "" : w->segments ? w->base : path;
@@ -53,7 +53,7 @@ void adcgs_enc_say_how_to_go_on(const adcgs_cli *cli, const adcgs_enc_watcher *w
                         adcgs_enc_is_ready(w) ? "; or make a file of this state with --finish" : "");
 }
 
-void adcgs_enc_rescue(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_status status)
+void adcgs_enc_rescue(const adcgs_cli *cli, adcgs_enc_context *w, adcgs_status status)
 {
     adcgs_error why = { ADCGS_OK, "" };
     char *path;
@@ -64,6 +64,6 @@ void adcgs_enc_rescue(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_status s
         adcgs_cli_error(cli, ADCGS_OK, "a failure ends the run at iteration %u, and its state is lost: %s", w->t->iteration,
                         why.text);
     else
-        adcgs_enc_say_how_to_go_on(cli, w, "a failure ends the run: the state is saved", path);
+        adcgs_enc_report_continuation(cli, w, "a failure ends the run: the state is saved", path);
     free(path);
 }

@@ -19,7 +19,7 @@
 
 /* ---- Progress and log ---- */
 
-static void log_line(adcgs_enc_watcher *w, adcgs_json *line)
+static void log_line(adcgs_enc_context *w, adcgs_json *line)
 {
     if (adcgs_json_write(line, w->log, w->o->log, &w->log_error) != ADCGS_OK) {
         fclose(w->log); /* the run continues without its log, and reports this at its end */
@@ -28,7 +28,7 @@ static void log_line(adcgs_enc_watcher *w, adcgs_json *line)
 }
 
 /** Begins a line with the members of all lines. */
-static void open_line(adcgs_enc_watcher *w, adcgs_json *line, const char *stage)
+static void open_line(adcgs_enc_context *w, adcgs_json *line, const char *stage)
 {
     adcgs_json_init(line);
     line->is_line = 1;
@@ -41,7 +41,7 @@ static void open_line(adcgs_enc_watcher *w, adcgs_json *line, const char *stage)
 }
 
 /** At the end of a run: the reasons for the model's size. */
-static void log_decisions(adcgs_enc_watcher *w)
+static void log_decisions(adcgs_enc_context *w)
 {
     adcgs_decision list[ADCGS_DECISIONS];
     adcgs_json line;
@@ -55,7 +55,7 @@ static void log_decisions(adcgs_enc_watcher *w)
     log_line(w, &line);
 }
 
-static void log_last(adcgs_enc_watcher *w)
+static void log_last(adcgs_enc_context *w)
 {
     const adcgs_train_report *r = &w->last;
     if (!w->log)
@@ -87,7 +87,7 @@ static void log_last(adcgs_enc_watcher *w)
     log_line(w, &line);
 }
 
-const char *adcgs_enc_left(double seconds, char text[32])
+const char *adcgs_enc_format_eta(double seconds, char text[32])
 {
     const unsigned whole = seconds >= 0 && seconds < 1e9 ? (unsigned)seconds : 0;
     if (whole >= 3600)
@@ -98,7 +98,7 @@ const char *adcgs_enc_left(double seconds, char text[32])
 }
 
 /** Saves a checkpoint. If that fails the run continues, and tries again when the next one is due. */
-static void save_now_and_then(adcgs_enc_watcher *w, double seconds)
+static void save_now_and_then(adcgs_enc_context *w, double seconds)
 {
     adcgs_error why = { ADCGS_OK, "" };
     const int failed = w->unsaved;
@@ -114,26 +114,26 @@ static void save_now_and_then(adcgs_enc_watcher *w, double seconds)
         adcgs_cli_note(w->progress.cli, "%s: written again", w->state);
 }
 
-static void forget_glances(adcgs_enc_watcher *w)
+static void free_thumbnails(adcgs_enc_context *w)
 {
-    adcgs_free(NULL, w->glances);
-    w->t->glances = w->glances = NULL;
+    adcgs_free(NULL, w->thumbnails);
+    w->t->thumbnails = w->thumbnails = NULL;
 }
 
 /** Checks the footage once its images are loaded, before hours are spent on it. */
-static void look_at_footage(adcgs_enc_watcher *w)
+static void look_at_footage(adcgs_enc_context *w)
 {
-    if (!w->glances || !w->t->divide)
+    if (!w->thumbnails || !w->t->divide)
         return;
     adcgs_progress_clear(&w->progress);
-    adcgs_enc_doubt_footage(w->progress.cli, w->t->scene, &w->t->stereo, &w->t->doubled, w->t->pool, w->glances, w->begins,
-                            &w->doubted);
-    forget_glances(w);
+    adcgs_enc_diagnose_footage(w->progress.cli, w->t->scene, &w->t->stereo, &w->t->duplicates, w->t->pool, w->thumbnails,
+                               w->begins, &w->doubted);
+    free_thumbnails(w);
 }
 
 static int observe(void *user, const adcgs_train_report *r)
 {
-    adcgs_enc_watcher *w = user;
+    adcgs_enc_context *w = user;
     char left[32], attempt[32] = "", segment[32] = "";
     if (w->segments)
         snprintf(segment, sizeof segment, "%u/%u ", w->segment + 1, w->segments);
@@ -144,18 +144,18 @@ static int observe(void *user, const adcgs_train_report *r)
     int stops = 0;
     look_at_footage(w);
     if (w->t->divide)
-        adcgs_enc_tell_no_room(w);
+        adcgs_enc_report_no_space(w);
     w->last = *r;
     if (r->iteration && !w->first.iteration)
         w->first = *r;
     if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back, and so does another try */
         log_last(w);
-    if (w->hear)
-        stops = w->hear(w->hear_user, w);
+    if (w->on_progress)
+        stops = w->on_progress(w->progress_user, w);
     else if (r->iteration)
         adcgs_progress_show(&w->progress, "%s%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
                             attempt, r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors,
-                            r->bytes / 1000, r->rate, adcgs_enc_left(r->left, left));
+                            r->bytes / 1000, r->rate, adcgs_enc_format_eta(r->left, left));
     if (r->iteration)
         adcgs_enc_preview_show(&w->preview, w->t, r->stage, &w->progress);
     if (w->keeps && r->spent.clock - w->saved > w->o->checkpoint_every)
@@ -165,8 +165,8 @@ static int observe(void *user, const adcgs_train_report *r)
 
 static int loading(void *user, uint32_t done, uint32_t n)
 {
-    adcgs_enc_watcher *w = user;
-    if (!w->hear)
+    adcgs_enc_context *w = user;
+    if (!w->on_progress)
         adcgs_progress_show(&w->progress, "images    %6u/%u", done, n);
     /* Later there is a run to save, after the images are loaded. */
     return adcgs_interrupted() && !w->t->iteration && !w->is_live;
@@ -174,12 +174,12 @@ static int loading(void *user, uint32_t done, uint32_t n)
 
 /* ---- Notes in the stream ---- */
 
-void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes)
+void adcgs_enc_make_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes)
 {
     snprintf(n->seed, sizeof n->seed, "%llu", (unsigned long long)t->config.seed);
     snprintf(n->lambda, sizeof n->lambda, "%g", t->lambda);
     snprintf(n->iterations, sizeof n->iterations, "%u", t->iteration);
-    adcgs_decisions_tell(&t->decisions, n->decisions);
+    adcgs_decisions_format(&t->decisions, n->decisions);
     const adcgs_encode_note list[] = {
         { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
         { "iterations", n->iterations }, { "seed", n->seed },     { "decisions", n->decisions },
@@ -196,37 +196,37 @@ void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char
 /** The bytes of the run's file. */
 static adcgs_status measure(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *error)
 {
-    const adcgs_enc_watcher *w = user;
+    const adcgs_enc_context *w = user;
     adcgs_enc_notes n;
-    adcgs_enc_take_notes(&n, t, (const char *)w->changes.data);
+    adcgs_enc_make_notes(&n, t, (const char *)w->changes.data);
     return adcgs_encode_bytes(bytes, t, -1, n.list, n.n, error);
 }
 
-adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const adcgs_enc_watcher *w, adcgs_pool *pool,
+adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const adcgs_enc_context *w, adcgs_pool *pool,
                               adcgs_error *error)
 {
     adcgs_enc_notes n;
-    adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
+    adcgs_enc_make_notes(&n, w->t, (const char *)w->changes.data);
     ADCGS_TRY(adcgs_encode_stream(stream, w->t, n.list, n.n, error));
     return adcgs_encode_verified(stream, bytes, w->t->cpu, pool, error);
 }
 
 /* ---- Training ---- */
 
-static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
+static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_context *w, adcgs_error *error)
 {
     char *path;
     if (adcgs_enc_is_ready(w) && adcgs_interrupts() < 2)
         adcgs_cli_error(cli, ADCGS_OK, "interrupted: saving the state; a second interrupt makes a file of the present state");
     ADCGS_TRY(adcgs_enc_save(w, w->state, 1, &path, error));
-    if (!w->hear) /* else the listener reports for all */
-        adcgs_enc_say_how_to_go_on(cli, w, "stopped", path);
+    if (!w->on_progress) /* else the listener reports for all */
+        adcgs_enc_report_continuation(cli, w, "stopped", path);
     free(path);
     return ADCGS_OK;
 }
 
 /** Makes a stream of a run at any stage. */
-static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
+static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_context *w, adcgs_error *error)
 {
     if (!adcgs_trainer_moves(w->t))
         adcgs_cli_error(cli, ADCGS_OK, "%s: at iteration %u of %u nothing moves yet: the file shows a static, coarse scene; a "
@@ -244,7 +244,7 @@ static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_err
 }
 
 /** Remarks that the figures alone do not show. */
-static void remark(const adcgs_cli *cli, const adcgs_enc_watcher *w)
+static void remark(const adcgs_cli *cli, const adcgs_enc_context *w)
 {
     const adcgs_trainer *t = w->t;
     if (t->rollbacks)
@@ -256,7 +256,7 @@ static void remark(const adcgs_cli *cli, const adcgs_enc_watcher *w)
 }
 
 /** Trains, in a team if there is one. The processor time is that of all ranks, except for time from a checkpoint. */
-static adcgs_status run(adcgs_enc_watcher *w, int *stopped, adcgs_error *error)
+static adcgs_status run(adcgs_enc_context *w, int *stopped, adcgs_error *error)
 {
     const double before = w->t->elapsed.cpu;
     w->t->team = adcgs_enc_team_of(&w->team);
@@ -269,7 +269,7 @@ static adcgs_status run(adcgs_enc_watcher *w, int *stopped, adcgs_error *error)
     return status;
 }
 
-static adcgs_status save_beginning(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
+static adcgs_status save_beginning(const adcgs_cli *cli, adcgs_enc_context *w, adcgs_error *error)
 {
     char *path;
     ADCGS_TRY(adcgs_enc_save(w, w->o->beginning, 1, &path, error));
@@ -280,7 +280,7 @@ static adcgs_status save_beginning(const adcgs_cli *cli, adcgs_enc_watcher *w, a
 }
 
 /** state: a checkpoint to continue from, or NULL. */
-static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char *state, adcgs_error *error)
+static adcgs_status train(const adcgs_cli *cli, adcgs_enc_context *w, const char *state, adcgs_error *error)
 {
     int stopped;
     if (state)
@@ -317,7 +317,7 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
     return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", w->target);
 }
 
-adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
+adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
                              const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error)
 {
     if (!adcgs_enc_team_follows(&w->team))
@@ -333,8 +333,8 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
         ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &config, otherwise, job->cpu, job->pool, error));
     }
     if (tells) {
-        w->t->glances = w->glances = adcgs_alloc(NULL, w->t->n_views, sizeof *w->glances, error);
-        if (!w->glances)
+        w->t->thumbnails = w->thumbnails = adcgs_alloc(NULL, w->t->n_views, sizeof *w->thumbnails, error);
+        if (!w->thumbnails)
             return adcgs_alloc_status(error);
     }
     w->begins = scene->whole && job->cuts.n ? job->cuts.at[w->segment] : 0;
@@ -344,15 +344,15 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
     w->t->measure_user = w;
     w->t->picture_memory = job->o->memory;
     if (job->ranks && !job->o->memory) /* the ranks of a host share it */
-        w->t->picture_memory = adcgs_pictures_usual_memory() / (uint64_t)ADCGS_MAX(job->ranks->local_size, 1);
+        w->t->picture_memory = adcgs_image_store_default_memory() / (uint64_t)ADCGS_MAX(job->ranks->local_size, 1);
     w->t->loading = loading;
     w->t->loading_user = w;
     w->t->started = started;
     if (tells)
-        ADCGS_TRY(adcgs_enc_tell_room(w, error));
+        ADCGS_TRY(adcgs_enc_report_space(w, error));
     const adcgs_status status = train(job->cli, w, state, error);
-    w->heard = adcgs_interrupts();
-    forget_glances(w);
+    w->interrupts = adcgs_interrupts();
+    free_thumbnails(w);
     return status;
 }
 
@@ -380,15 +380,15 @@ static int looking(void *user, uint32_t done, uint32_t n)
     return adcgs_interrupted();
 }
 
-adcgs_status adcgs_enc_even_light(const adcgs_enc_job *job, adcgs_progress *progress, adcgs_error *error)
+adcgs_status adcgs_enc_compensate_light(const adcgs_enc_job *job, adcgs_progress *progress, adcgs_error *error)
 {
-    const adcgs_pictures_config config = { .memory = job->o->memory, .progress = looking, .user = progress };
+    const adcgs_image_store_config config = { .memory = job->o->memory, .progress = looking, .user = progress };
     adcgs_fault found;
     if (!job->config.exposure_step_compensation)
         return ADCGS_OK;
-    ADCGS_TRY(adcgs_light_even(job->scene, &found, &config, job->pool, error));
+    ADCGS_TRY(adcgs_light_compensate(job->scene, &found, &config, job->pool, error));
     adcgs_progress_clear(progress);
     if (!job->ranks || !job->ranks->rank)
-        adcgs_enc_tell_evened(job->cli, job->scene, &found);
+        adcgs_enc_report_light(job->cli, job->scene, &found);
     return ADCGS_OK;
 }

@@ -27,7 +27,7 @@ typedef struct adcgs_enc_options {
     uint64_t seed, size, memory;
 } adcgs_enc_options;
 
-typedef struct adcgs_enc_watcher {
+typedef struct adcgs_enc_context {
     const adcgs_enc_options *o;
     const char *target; /* the run's product: the stream, a part of it, or the state before lambda matters */
     int keeps;    /* it saves its state at intervals */
@@ -42,22 +42,23 @@ typedef struct adcgs_enc_watcher {
     adcgs_train_report first; /* after the first iteration */
     double saved;
     adcgs_enc_preview preview;
-    int heard;   /* interrupts handled when training ended; further ones end the measurement */
+    int interrupts;   /* interrupts handled when training ended; further ones end the measurement */
     int unsaved; /* the last checkpoint could not be written */
     int cut_short; /* by interrupts: the file was made before the run's end */
     adcgs_train_report last;
-    int (*hear)(void *user, const struct adcgs_enc_watcher *w); /* receives the progress instead of the display; nonzero: stop */
-    void *hear_user;
+    /* Receives the progress instead of the display; nonzero: stop. */
+    int (*on_progress)(void *user, const struct adcgs_enc_context *w);
+    void *progress_user;
     size_t uncompressed_bytes;
     char trials[ADCGS_TRIALS_TEXT]; /**< figures of the trials, for the stream; "" without trials */
     adcgs_buffer changes; /**< settings that differ from the preset's, for the stream */
     uint32_t next_log; /**< iteration */
     adcgs_error log_error;
     double begins;    /* time in the scene at which the trained part begins */
-    adcgs_glance *glances; /* until the footage has been checked; NULL: no check */
+    adcgs_thumbnail *thumbnails; /* until the footage has been checked; NULL: no check */
     unsigned doubted; /* kinds of faults of footage that were reported */
     int told_room;    /* 1: the space for images was reported; 2: also that it is not enough */
-} adcgs_enc_watcher;
+} adcgs_enc_context;
 
 /** Notes in the stream on its making. */
 typedef struct adcgs_enc_notes {
@@ -83,14 +84,14 @@ typedef struct adcgs_enc_job {
 } adcgs_enc_job;
 
 /** Formats "  1:05:00 left", or nothing if the time is unknown. */
-const char *adcgs_enc_left(double seconds, char text[32]);
+const char *adcgs_enc_format_eta(double seconds, char text[32]);
 /**
  * changes: settings that differ from the preset's, "" for none. The notes point into this struct, changes and the configuration.
  */
-void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes);
+void adcgs_enc_make_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes);
 
 /** Makes the run's stream, initialised by the caller, and its bytes, which are read back once. */
-adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const adcgs_enc_watcher *w, adcgs_pool *pool,
+adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const adcgs_enc_context *w, adcgs_pool *pool,
                               adcgs_error *error);
 
 /**
@@ -98,14 +99,14 @@ adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const a
  * checkpoint to continue from, or to finish, or NULL. started: the time from which the run counts. otherwise: the model to
  * continue if one that begins anew had other parameters than this one, or NULL.
  */
-adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
+adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
                              const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error);
 
 /**
  * Evens out the light of the job's scene, if requested, and reports it. Call it when the scene is open and before it is cut,
  * since it reads images of the whole scene. progress: cleared before a message.
  */
-adcgs_status adcgs_enc_even_light(const adcgs_enc_job *job, adcgs_progress *progress, adcgs_error *error);
+adcgs_status adcgs_enc_compensate_light(const adcgs_enc_job *job, adcgs_progress *progress, adcgs_error *error);
 
 /**
  * Sets the size of the images of the job's scene, once it is open, or of the first live segment: the requested size, or, by

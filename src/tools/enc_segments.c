@@ -38,15 +38,15 @@ adcgs_status adcgs_enc_cut(adcgs_enc_job *job, double seconds, adcgs_error *erro
 }
 
 /** The notes of a run that has ended, except lambda. */
-static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const adcgs_enc_job *job)
+static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_context *w, const adcgs_enc_job *job)
 {
     adcgs_trainer ended = { .config = job->config, .iteration = job->config.iterations };
     memcpy(ended.trials, w->trials, sizeof ended.trials);
-    adcgs_enc_take_notes(n, &ended, (const char *)w->changes.data);
+    adcgs_enc_make_notes(n, &ended, (const char *)w->changes.data);
 }
 
 /** Loads the model that the part is trained from; with a plan, that part must belong to the plan, too. */
-static adcgs_status load_before(adcgs_model *before, const adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
+static adcgs_status load_before(adcgs_model *before, const adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_error *error)
 {
     if (!job->follows[w->segment])
         return ADCGS_OK;
@@ -57,7 +57,7 @@ static adcgs_status load_before(adcgs_model *before, const adcgs_enc_watcher *w,
 }
 
 /** Adds notes on the part's plan and on the model that it continues. */
-static void add_plan_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const adcgs_enc_job *job)
+static void add_plan_notes(adcgs_enc_notes *n, const adcgs_enc_context *w, const adcgs_enc_job *job)
 {
     if (!job->plan)
         return;
@@ -68,7 +68,7 @@ static void add_plan_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const
     n->list[n->n++] = (adcgs_encode_note){ ADCGS_NOTE_FOLLOWS, n->follows };
 }
 
-static adcgs_status learn_scene(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, adcgs_time *spent,
+static adcgs_status learn_scene(adcgs_enc_context *w, const adcgs_enc_job *job, const adcgs_scene *scene, adcgs_time *spent,
                                 adcgs_error *error)
 {
     adcgs_model before = { .n = 0 };
@@ -79,13 +79,13 @@ static adcgs_status learn_scene(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
     if (status == ADCGS_OK)
         status = load_before(&before, w, job, error);
     if (status == ADCGS_OK)
-        status = adcgs_enc_learn(w, job, scene, job->follows[w->segment] ? &before : NULL, NULL,
+        status = adcgs_enc_train(w, job, scene, job->follows[w->segment] ? &before : NULL, NULL,
                                  resumes && !access(w->state, F_OK) ? w->state : NULL, adcgs_time_now(), error);
     adcgs_model_clear(&before, NULL);
     *spent = adcgs_time_plus(*spent, w->last.spent);
     if (status != ADCGS_OK || adcgs_enc_team_follows(&w->team))
         return status;
-    adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
+    adcgs_enc_make_notes(&n, w->t, (const char *)w->changes.data);
     add_plan_notes(&n, w, job);
     status = adcgs_enc_part_save(w->base, &job->cuts, w->segment, w->t, n.list, n.n, job->pool, error);
     if (status != ADCGS_OK && status != ADCGS_ERR_DATA)
@@ -93,7 +93,7 @@ static adcgs_status learn_scene(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
     return status;
 }
 
-adcgs_status adcgs_enc_segment_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+adcgs_status adcgs_enc_segment_train(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
 {
     adcgs_scene part;
     if (job->cuts.n > 1)
@@ -105,7 +105,7 @@ adcgs_status adcgs_enc_segment_learn(adcgs_enc_watcher *w, const adcgs_enc_job *
     return status;
 }
 
-adcgs_status adcgs_enc_segment_begin(adcgs_enc_watcher *w, uint32_t segment, adcgs_error *error)
+adcgs_status adcgs_enc_segment_begin(adcgs_enc_context *w, uint32_t segment, adcgs_error *error)
 {
     free(w->state);
     w->state = NULL;
@@ -113,7 +113,7 @@ adcgs_status adcgs_enc_segment_begin(adcgs_enc_watcher *w, uint32_t segment, adc
     return adcgs_enc_part_name(&w->state, w->base, segment, 0, error);
 }
 
-adcgs_status adcgs_enc_segment_find(adcgs_enc_watcher *w, const adcgs_enc_job *job, uint32_t segment, int *found,
+adcgs_status adcgs_enc_segment_find(adcgs_enc_context *w, const adcgs_enc_job *job, uint32_t segment, int *found,
                                     adcgs_error *error)
 {
     adcgs_enc_notes expected;
@@ -125,7 +125,7 @@ adcgs_status adcgs_enc_segment_find(adcgs_enc_watcher *w, const adcgs_enc_job *j
                                 error);
 }
 
-adcgs_status adcgs_enc_segments_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+adcgs_status adcgs_enc_segments_train(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
 {
     w->segments = job->cuts.n;
     for (uint32_t i = 0; i < w->segments; i++) {
@@ -133,12 +133,12 @@ adcgs_status adcgs_enc_segments_learn(adcgs_enc_watcher *w, const adcgs_enc_job 
         ADCGS_TRY(adcgs_enc_segment_begin(w, i, error));
         ADCGS_TRY(adcgs_enc_segment_find(w, job, i, &found, error));
         if (!found)
-            ADCGS_TRY(adcgs_enc_segment_learn(w, job, spent, error));
+            ADCGS_TRY(adcgs_enc_segment_train(w, job, spent, error));
     }
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_enc_segments_write(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+adcgs_status adcgs_enc_segments_write(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
 {
     adcgs_stream stream;
     adcgs_buffer bytes;

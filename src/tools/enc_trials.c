@@ -8,7 +8,7 @@
 
 static int show(void *user, const char *without, uint32_t done, uint32_t most)
 {
-    adcgs_enc_watcher *w = user;
+    adcgs_enc_context *w = user;
     if (!adcgs_enc_team_follows(&w->team))
         adcgs_progress_show(&w->progress, "trials    %u of at most %u: %s%s", done + 1, most,
                             without ? "without " : "all mechanisms", without ? without : "");
@@ -26,7 +26,7 @@ static void tell(const adcgs_enc_job *job, const adcgs_trials *t)
                            adcgs_mechanism_names[t->of[i].mechanism], t->views, t->of[i].without, t->of[i].with, t->iterations);
 }
 
-adcgs_status adcgs_enc_try(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_error *error)
+adcgs_status adcgs_enc_try(adcgs_enc_job *job, adcgs_enc_context *w, adcgs_error *error)
 {
     const adcgs_trials_options options = { .cpu = job->cpu, .pool = job->pool, .memory = job->o->memory, .progress = show,
                                            .user = w };
@@ -36,7 +36,7 @@ adcgs_status adcgs_enc_try(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_error
         return adcgs_checkpoint_adopt(&job->config, state, error);
     ADCGS_TRY(adcgs_trials_run(&trials, &job->config, job->scene, &options, error));
     adcgs_progress_clear(&w->progress);
-    adcgs_trials_tell(&trials, w->trials);
+    adcgs_trials_format(&trials, w->trials);
     tell(job, &trials);
     return ADCGS_OK;
 }

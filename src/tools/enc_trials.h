@@ -9,6 +9,6 @@
  * Runs the trials of the job's scene, before it is cut. Reports each dropped mechanism, and turns it off in the job's
  * configuration. A run that is resumed or finished from a state adopts the verdicts of that state instead.
  */
-adcgs_status adcgs_enc_try(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_error *error);
+adcgs_status adcgs_enc_try(adcgs_enc_job *job, adcgs_enc_context *w, adcgs_error *error);
 
 #endif

@@ -15,9 +15,9 @@
 /** Ends at an interrupt: the parts stay, and the same command with --resume joins them. */
 static adcgs_status heed(void *user, const adcgs_view_score *score, adcgs_error *error)
 {
-    const int *const heard = user;
+    const int *const interrupts = user;
     (void)score;
-    return adcgs_interrupts() == *heard ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "interrupted during the comparison; "
+    return adcgs_interrupts() == *interrupts ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "interrupted during the comparison; "
                                                                                      "continue it with --resume");
 }
 
@@ -27,18 +27,18 @@ static adcgs_status measure(double *psnr, const adcgs_buffer *bytes, const adcgs
     adcgs_config config;
     adcgs_decoder *decoder = NULL;
     adcgs_evaluation result = { .n = 0 };
-    int heard = adcgs_interrupts();
+    int interrupts = adcgs_interrupts();
     adcgs_config_init(&config, sizeof config);
     config.cpu = job->cpu;
     config.pool = job->pool;
     ADCGS_TRY(adcgs_open_memory(&decoder, bytes->data, bytes->size, &config, error));
-    const adcgs_status status = adcgs_evaluate(&result, decoder, job->scene, ADCGS_SPLIT_TRAIN, 0, heed, &heard, error);
+    const adcgs_status status = adcgs_evaluate(&result, decoder, job->scene, ADCGS_SPLIT_TRAIN, 0, heed, &interrupts, error);
     adcgs_close(&decoder);
     *psnr = result.psnr;
     return status;
 }
 
-static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
+static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_error *error)
 {
     adcgs_enc_job whole = *job;
     whole.config = job->whole;
@@ -48,7 +48,7 @@ static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_watcher *w, const
     w->segments = w->segment = w->next_log = 0;
     w->team.team.size = 0; /* other ranks are done */
     ADCGS_TRY(adcgs_enc_part_name(&w->state, w->base, job->cuts.n, 0, error));
-    adcgs_status status = adcgs_enc_learn(w, &whole, job->scene, NULL, NULL,
+    adcgs_status status = adcgs_enc_train(w, &whole, job->scene, NULL, NULL,
                                           job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_time_now(), error);
     adcgs_stream stream;
     adcgs_stream_init(&stream);
@@ -59,7 +59,7 @@ static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_watcher *w, const
     return status;
 }
 
-adcgs_status adcgs_enc_try_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_buffer *bytes, adcgs_time *spent,
+adcgs_status adcgs_enc_try_whole(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_buffer *bytes, adcgs_time *spent,
                                  adcgs_error *error)
 {
     adcgs_buffer whole;

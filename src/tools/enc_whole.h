@@ -11,7 +11,7 @@
  * less than 0.05 dB lower, it replaces that stream in bytes. The function reports the decision. *spent grows by the training
  * time. The checkpoint has the name of a part after the last.
  */
-adcgs_status adcgs_enc_try_whole(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, adcgs_buffer *bytes, adcgs_time *spent,
+adcgs_status adcgs_enc_try_whole(adcgs_enc_context *context, const adcgs_enc_job *job, adcgs_buffer *bytes, adcgs_time *spent,
                                  adcgs_error *error);
 
 #endif

@@ -84,7 +84,7 @@ adcgs_status adcgs_match_check(const adcgs_match *m, adcgs_error *error)
     return ADCGS_OK;
 }
 
-void adcgs_match_say(const adcgs_match *m, const adcgs_evaluation *evaluation)
+void adcgs_match_report(const adcgs_match *m, const adcgs_evaluation *evaluation)
 {
     adcgs_info info;
     if (adcgs_get_info(m->decoder, &info, sizeof info, NULL) != ADCGS_OK)

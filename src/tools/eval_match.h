@@ -18,6 +18,6 @@ typedef struct adcgs_match {
 /** Before the evaluation: ADCGS_ERR_DATA if no view of the split lies within the stream's time. */
 adcgs_status adcgs_match_check(const adcgs_match *match, adcgs_error *error);
 /** After the evaluation: prints remarks on mismatches. */
-void adcgs_match_say(const adcgs_match *match, const adcgs_evaluation *evaluation);
+void adcgs_match_report(const adcgs_match *match, const adcgs_evaluation *evaluation);
 
 #endif

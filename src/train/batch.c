@@ -106,7 +106,7 @@ static adcgs_status look_at(adcgs_trainer *t, double progress, uint32_t first, u
             ADCGS_TRY(keep_means(t, error));
         else if (t->rounding)
             put_means_back(t);
-        ADCGS_TRY(adcgs_look(t, progress, t->iteration * t->config.batch + i, &stats, &t->batch.seen[i], error));
+        ADCGS_TRY(adcgs_view_pass(t, progress, t->iteration * t->config.batch + i, &stats, &t->batch.results[i], error));
         take_gradients(t->f, t->batch.sum[*n]);
         *n = adcgs_tree_add(parts, *n, (adcgs_tree_part){ i, 1, t->batch.sum[*n] }, t->batch.size);
     }
@@ -127,13 +127,13 @@ static adcgs_status look_at_many(adcgs_trainer *t, double progress, adcgs_error 
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_batch_look(adcgs_trainer *t, double progress, adcgs_error *error)
+adcgs_status adcgs_batch_run(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const uint32_t n = t->config.batch;
-    memset(t->batch.seen, 0, n * sizeof *t->batch.seen);
+    memset(t->batch.results, 0, n * sizeof *t->batch.results);
     ADCGS_TRY(n > 1 ? look_at_many(t, progress, error) :
-                      adcgs_look(t, progress, t->iteration, &t->stats, t->batch.seen, error));
+                      adcgs_view_pass(t, progress, t->iteration, &t->stats, t->batch.results, error));
     for (uint32_t i = 0; i < n; i++)
-        adcgs_look_note(t, progress, t->iteration * n + i, &t->batch.seen[i]);
+        adcgs_view_pass_apply(t, progress, t->iteration * n + i, &t->batch.results[i]);
     return ADCGS_OK;
 }

@@ -9,9 +9,10 @@
 #include "train/state.h"
 
 /**
- * Runs an iteration's view passes. f->param[].g receives the mean gradients, the statistics are updated, and trainer->batch.seen
- * receives the results of each view. Gradients and statistics are summed by a tree over the views (tree_sum.h).
+ * Runs an iteration's view passes. f->param[].g receives the mean gradients, the statistics are updated, and
+ * trainer->batch.results receives the results of each view. Gradients and statistics are summed by a tree over the views
+ * (tree_sum.h).
  */
-adcgs_status adcgs_batch_look(adcgs_trainer *trainer, double progress, adcgs_error *error);
+adcgs_status adcgs_batch_run(adcgs_trainer *trainer, double progress, adcgs_error *error);
 
 #endif

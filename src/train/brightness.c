@@ -43,9 +43,9 @@ adcgs_status adcgs_bound_gains(adcgs_trainer *t, adcgs_error *error)
         of[i] = (amount){ 0, 0 };
     for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
         const adcgs_view *v = &t->views[i].view;
-        status = adcgs_pictures_get(t->pictures, i, t->taken, error);
+        status = adcgs_image_store_get(t->pictures, i, t->taken, error);
         if (status == ADCGS_OK)
-            add_image(&of[e->of[i]], t, t->taken, adcgs_pictures_hidden(t->pictures, i), (size_t)v->width * (size_t)v->height);
+            add_image(&of[e->of[i]], t, t->taken, adcgs_image_store_mask(t->pictures, i), (size_t)v->width * (size_t)v->height);
     }
     for (uint32_t i = 0; status == ADCGS_OK && i < e->n; i++)
         brightness[i] = of[i].n > 0 ? of[i].sum / of[i].n : 0;

@@ -81,7 +81,7 @@ static void walk_settings(walk *w, adcgs_trainer *t)
 {
     visit(w, &t->rounding, sizeof t->rounding);
     for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
-        const int bound = s->binds == ADCGS_BINDS_WITH_LAMBDA ? t->lambda_used : s->binds == ADCGS_BINDS_ALWAYS || t->rounding;
+        const int bound = s->fixed == ADCGS_FIXED_WITH_LAMBDA ? t->lambda_used : s->fixed == ADCGS_FIXED_ALWAYS || t->rounding;
         const double here = adcgs_setting_get(s, &t->config);
         char texts[2][ADCGS_SETTING_TEXT];
         double there = here;
@@ -161,13 +161,13 @@ static void walk_config(walk *w, adcgs_trainer *t)
 static void walk_scalars(walk *w, adcgs_trainer *t)
 {
     visit(w, &t->iteration, sizeof t->iteration);
-    visit(w, &t->rested, sizeof t->rested);
-    visit(w, &t->weighed, sizeof t->weighed);
-    visit(w, &t->slimmed, sizeof t->slimmed);
-    visit(w, &t->decided, sizeof t->decided);
+    visit(w, &t->fixed_unchanging, sizeof t->fixed_unchanging);
+    visit(w, &t->motion_tested, sizeof t->motion_tested);
+    visit(w, &t->units_pruned, sizeof t->units_pruned);
+    visit(w, &t->pruned, sizeof t->pruned);
     visit(w, &t->tiered, sizeof t->tiered);
     visit(w, &t->frozen, sizeof t->frozen);
-    visit(w, &t->released, sizeof t->released);
+    visit(w, &t->unfreeze_tests, sizeof t->unfreeze_tests);
     visit(w, &t->lr_scale, sizeof t->lr_scale);
     visit(w, &t->contrast, sizeof t->contrast);
     visit(w, &t->lambda, sizeof t->lambda);
@@ -210,7 +210,7 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
     visit(w, f->tier, lanes);
     visit(w, &f->finest, sizeof f->finest);
     visit(w, f->growth, sizeof f->growth);
-    visit(w, f->learns, lanes * sizeof(float));
+    visit(w, f->trainable, lanes * sizeof(float));
     w->failed |= f->finest >= ADCGS_TIERS_MAX;
     visit(w, f->centre, sizeof f->centre);
     visit(w, t->stats.weight, adcgs_train_stats_size(f) * sizeof(float));

@@ -49,8 +49,9 @@ static int curriculum_is_sound(const adcgs_trainer *t)
 
 static int flags_are_sound(const adcgs_trainer *t)
 {
-    const uint8_t flags[] = { t->lambda_used, t->rested, t->weighed, t->decided, t->tiered, t->rounding, t->frozen };
-    return are_at_most(flags, sizeof flags, 1) && t->slimmed <= 2 && (!t->frozen || t->rounding);
+    const uint8_t flags[] = { t->lambda_used, t->fixed_unchanging, t->motion_tested, t->pruned, t->tiered, t->rounding,
+                             t->frozen };
+    return are_at_most(flags, sizeof flags, 1) && t->units_pruned <= 2 && (!t->frozen || t->rounding);
 }
 
 /** Checks the control variables. Trained values need not be finite: a run that finds one that is not rolls back by itself. */
@@ -75,7 +76,7 @@ static int steps_are_sound(const adcgs_mlp *m)
 static const char *check_anchors(const adcgs_fmodel *f)
 {
     const size_t lanes = (size_t)f->groups * ADCGS_LANES;
-    if (!are_flags(f->keep, lanes * f->params.k) || !are_flags(f->moving, lanes) || !are_flags(f->learns, lanes))
+    if (!are_flags(f->keep, lanes * f->params.k) || !are_flags(f->moving, lanes) || !are_flags(f->trainable, lanes))
         return "an anchor's flag is neither 0 nor 1";
     if (!are_at_most(f->body, lanes, f->params.bodies) || !are_at_most(f->tier, lanes, f->finest))
         return "an anchor belongs to a body or a tier that does not exist";

@@ -133,7 +133,7 @@ static void name_bodies(const adcgs_fmodel *f, adcgs_stereo *found, stand *stand
         }
 }
 
-adcgs_status adcgs_follow_bodies(const adcgs_fmodel *f, adcgs_stereo *found, adcgs_error *error)
+adcgs_status adcgs_continue_bodies(const adcgs_fmodel *f, adcgs_stereo *found, adcgs_error *error)
 {
     stand stands[ADCGS_BODIES_MAX];
     uint8_t number[ADCGS_BODIES_MAX] = { 0 };

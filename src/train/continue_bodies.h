@@ -15,6 +15,6 @@
  * poses then map the model's rest positions to the scene. A new body gets a free number, or none if no number is free. Afterwards
  * found->body[b - 1] is body b, with no poses if it was not found.
  */
-adcgs_status adcgs_follow_bodies(const adcgs_fmodel *f, adcgs_stereo *found, adcgs_error *error);
+adcgs_status adcgs_continue_bodies(const adcgs_fmodel *f, adcgs_stereo *found, adcgs_error *error);
 
 #endif

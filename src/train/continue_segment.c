@@ -31,7 +31,7 @@ static void shift_life(adcgs_fmodel *f, uint32_t i, double from, double ratio)
     const double t = (double)*middle / 8 + 0.5;
     *middle = (float)(8 * ((t - from) / ratio - 0.5));
     *pace += (float)log(ratio);
-    f->learns[i] = 1;
+    f->trainable[i] = 1;
 }
 
 static void go_on_living(adcgs_fmodel *f, double from, double ratio)
@@ -68,7 +68,7 @@ static adcgs_status drop_dead(adcgs_fmodel *f, adcgs_error *error)
     uint32_t *source = adcgs_alloc(NULL, f->n, sizeof *source, error), n = 0;
     adcgs_status status = pos && source ? ADCGS_OK : adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
-        if (f->learns[i] == 0 || fmaxf(adcgs_fmodel_presence(f, i, 0), adcgs_fmodel_presence(f, i, 0.5f)) > GONE ||
+        if (f->trainable[i] == 0 || fmaxf(adcgs_fmodel_presence(f, i, 0), adcgs_fmodel_presence(f, i, 0.5f)) > GONE ||
             (n == 0 && i + 1 == f->n)) {
             memcpy(pos[n], f->pos[i], sizeof pos[n]);
             source[n++] = i;
@@ -80,15 +80,15 @@ static adcgs_status drop_dead(adcgs_fmodel *f, adcgs_error *error)
     return status;
 }
 
-adcgs_status adcgs_follow(adcgs_fmodel **out, const adcgs_model *before, const adcgs_train_config *config, adcgs_stereo *found,
-                          double duration, adcgs_cpu_level cpu, adcgs_error *error)
+adcgs_status adcgs_continue_segment(adcgs_fmodel **out, const adcgs_model *before, const adcgs_train_config *config,
+                                    adcgs_stereo *found, double duration, adcgs_cpu_level cpu, adcgs_error *error)
 {
     const double end = before->time_end - before->time_start, then = end + before->reach;
     const double from = then > 0 ? end / then : 1, ratio = then > 0 && duration > 0 ? duration / then : 1;
     ADCGS_TRY(adcgs_fmodel_from_model(out, before, &config->shape, config->seed, cpu, error));
     go_on_living(*out, from, ratio);
     start_time_table(*out, from);
-    ADCGS_TRY(adcgs_follow_bodies(*out, found, error));
+    ADCGS_TRY(adcgs_continue_bodies(*out, found, error));
     adcgs_set_poses(*out, found);
     return drop_dead(*out, error);
 }

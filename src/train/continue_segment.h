@@ -14,7 +14,7 @@
  * Creates the float model that continues `before` for `duration` seconds. before: the model with the times of its segment. found:
  * the result of matching in this segment; its bodies get the model's numbers (continue_bodies.h).
  */
-adcgs_status adcgs_follow(adcgs_fmodel **out, const adcgs_model *before, const adcgs_train_config *config, adcgs_stereo *found,
-                          double duration, adcgs_cpu_level cpu, adcgs_error *error);
+adcgs_status adcgs_continue_segment(adcgs_fmodel **out, const adcgs_model *before, const adcgs_train_config *config,
+                                    adcgs_stereo *found, double duration, adcgs_cpu_level cpu, adcgs_error *error);
 
 #endif

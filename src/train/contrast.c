@@ -16,7 +16,7 @@ adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_erro
         const uint32_t view = (uint32_t)((uint64_t)i * t->n_views / n);
         const adcgs_view *v = &t->views[view].view;
         const size_t plane = (size_t)v->width * (size_t)v->height;
-        ADCGS_TRY(adcgs_pictures_get(t->pictures, view, t->taken, error));
+        ADCGS_TRY(adcgs_image_store_get(t->pictures, view, t->taken, error));
         for (size_t c = 0; c < 3; c++)
             for (size_t j = c * plane; j < (c + 1) * plane; j++) {
                 if (isnan(t->taken[j])) /* masked, or outside the lens's field */

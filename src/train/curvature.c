@@ -51,10 +51,10 @@ static adcgs_status project_views(adcgs_trainer *t, float *const h[ADCGS_P_ANCHO
         const adcgs_train_view *v = &t->views[(uint64_t)i * t->n_views / n];
         const size_t values = 3 * (size_t)v->view.width * (size_t)v->view.height;
         adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
-        ADCGS_TRY(adcgs_view_draw(t, &v->view, ADCGS_MEAN_LIGHT, t->image, 1, error));
+        ADCGS_TRY(adcgs_view_render(t, &v->view, ADCGS_MEAN_LIGHT, t->image, 1, error));
         for (uint32_t probe = 0; probe < PROBES; probe++) {
             random_signs(t->grad, values, (uint32_t)adcgs_random64(t->config.seed, 4000 + probe, i));
-            ADCGS_TRY(adcgs_view_draw_back(t, &v->view, ADCGS_MEAN_LIGHT, &t->pass->grads, error));
+            ADCGS_TRY(adcgs_view_backward(t, &v->view, ADCGS_MEAN_LIGHT, &t->pass->grads, error));
             adcgs_pass_backward(t->pass, t->f, ADCGS_DEFORM_ALL, 0, 0, 0, NULL);
             take_squares(t->f, h, scale);
         }

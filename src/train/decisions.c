@@ -18,7 +18,7 @@ void adcgs_decisions_list(const adcgs_decisions *d, adcgs_decision list[ADCGS_DE
     memcpy(list, all, sizeof all);
 }
 
-void adcgs_decisions_tell(const adcgs_decisions *d, char text[ADCGS_DECISIONS_TEXT])
+void adcgs_decisions_format(const adcgs_decisions *d, char text[ADCGS_DECISIONS_TEXT])
 {
     adcgs_decision list[ADCGS_DECISIONS];
     size_t n = 0;

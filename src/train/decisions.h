@@ -17,7 +17,7 @@ typedef struct adcgs_decisions {
     uint32_t most;       /**< maximum number of anchors at any time */
     uint32_t refused;    /**< primitives that could not grow at the last densification, because of max_anchors */
     uint32_t idle;       /**< anchors pruned because they were hardly visible */
-    uint32_t unseen, faint; /**< primitives dropped by adcgs_decide() */
+    uint32_t unseen, faint; /**< primitives dropped by adcgs_prune_and_fix() */
     uint32_t unchanging; /**< anchors made static because the images do not change where they are rendered */
     uint32_t unmoved;    /**< anchors made static because their change is not visible */
     uint32_t units;      /**< hidden units of networks that were pruned */
@@ -34,6 +34,6 @@ enum { ADCGS_DECISIONS = 14, ADCGS_DECISIONS_TEXT = 320 };
 
 void adcgs_decisions_list(const adcgs_decisions *decisions, adcgs_decision list[ADCGS_DECISIONS]);
 /** "points=18231 began=4500 ...", without values of 0. */
-void adcgs_decisions_tell(const adcgs_decisions *decisions, char text[ADCGS_DECISIONS_TEXT]);
+void adcgs_decisions_format(const adcgs_decisions *decisions, char text[ADCGS_DECISIONS_TEXT]);
 
 #endif

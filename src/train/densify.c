@@ -45,7 +45,7 @@ static uint32_t find_candidates(const adcgs_trainer *t, adcgs_ranked *list)
     for (uint32_t i = 0; i < slots; i++) {
         const float w = t->stats.weight[i];
         const uint32_t anchor = adcgs_anchor_of(t->f, i);
-        if (anchor >= t->f->n || t->f->learns[anchor] == 0 || t->f->keep[i] == 0 || !(w > 1))
+        if (anchor >= t->f->n || t->f->trainable[anchor] == 0 || t->f->keep[i] == 0 || !(w > 1))
             continue;
         const float score = t->stats.significance[i] / w;
         if (score > t->config.densify_threshold)
@@ -185,7 +185,7 @@ static void dress_moments(adcgs_trainer *t, const adcgs_stereo_point *const *poi
         dress(t->f, &place, 1);
         if (at == t->f->n)
             continue;
-        adcgs_set_span(t->f, at, points[i]);
+        adcgs_set_lifetime(t->f, at, points[i]);
         t->f->moving[at] = 1;
         t->f->body[at] = points[i]->body;
     }
@@ -236,7 +236,7 @@ static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_
 static void keep_anchors(adcgs_trainer *t, workspace *w)
 {
     for (uint32_t i = 0; i < t->f->n; i++)
-        if (t->f->learns[i] == 0 || !adcgs_anchor_is_idle(t, i, 0.2)) { /* frozen anchors cost nothing */
+        if (t->f->trainable[i] == 0 || !adcgs_anchor_is_idle(t, i, 0.2)) { /* frozen anchors cost nothing */
             cells_add(&w->occupied, t->f->pos[i]);
             adcgs_anchor_set_add(&w->next, t->f->pos[i], i, 0);
         }
@@ -265,7 +265,7 @@ adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error
     if (leaves_gaps(t, progress) && t->config.residual_densify)
         status = adcgs_residual_find(t, w.missing, MISSING_MOST, &n_missing, error);
     if (status == ADCGS_OK && t->config.params.spans && t->stereo.n_moving)
-        status = adcgs_moment_find(t, w.moment, MOMENT_MOST, &n_moment, error);
+        status = adcgs_temporal_densify_find(t, w.moment, MOMENT_MOST, &n_moment, error);
     if (status == ADCGS_OK) {
         n_moment = sow_moments(t, &w.next, w.next.n + (budget > w.next.n ? (budget - w.next.n) / 2 : 0), w.moment, n_moment,
                                &w.occupied);

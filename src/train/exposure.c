@@ -30,7 +30,7 @@ adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *vi
     uint32_t n = 0;
     if (!e->of)
         return adcgs_alloc_status(error);
-    ADCGS_TRY(adcgs_sort_by_camera(views, n_views, e->of, NULL, &n, error));
+    ADCGS_TRY(adcgs_group_views(views, n_views, e->of, NULL, &n, error));
     if (n < 2 || (n > most && !still))
         return ADCGS_OK;
     e->cameras = adcgs_alloc(NULL, n, sizeof *e->cameras, error);

@@ -13,7 +13,7 @@ static void hold_settled(const adcgs_fmodel *f, float *const curvature[ADCGS_P_A
     for (int i = 0; f->follows && i < ADCGS_P_ANCHOR; i++) {
         const size_t rows = (size_t)adcgs_fmodel_rows(f, i);
         for (size_t j = 0; j < f->param[i].n; j++)
-            if (f->learns[j / ADCGS_LANES / rows * ADCGS_LANES + j % ADCGS_LANES] == 0)
+            if (f->trainable[j / ADCGS_LANES / rows * ADCGS_LANES + j % ADCGS_LANES] == 0)
                 curvature[i][j] = HELD;
     }
 }

@@ -22,7 +22,7 @@ static double cube_half(const adcgs_start_points *c)
     return fmin(half, 8);
 }
 
-void adcgs_set_span(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p)
+void adcgs_set_lifetime(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p)
 {
     *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_MIDDLE) = 8 * (p->t + p->shift - 0.5f);
     *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_PACE) = -logf(p->life);
@@ -77,7 +77,7 @@ static void set_life(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p, f
         return;
     for (int a = 0; a < 6; a++)
         *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, a) -= 0.5f * logf(fminf(2 * half, 1));
-    adcgs_set_span(f, i, p);
+    adcgs_set_lifetime(f, i, p);
 }
 
 static adcgs_status make_anchors(adcgs_fmodel **out, const adcgs_start_points *c, const adcgs_train_config *config,
@@ -126,7 +126,7 @@ adcgs_status adcgs_initialise(adcgs_fmodel **out, const adcgs_scene *scene, cons
     adcgs_start_points points;
     adcgs_status status = adcgs_start_points_find(&points, scene, config, found, error);
     if (status == ADCGS_OK)
-        status = make_anchors(out, &points, config, adcgs_half_life(config, found), error);
+        status = make_anchors(out, &points, config, adcgs_half_lifetime(config, found), error);
     if (status == ADCGS_OK)
         adcgs_set_poses(*out, found);
     adcgs_start_points_clear(&points);

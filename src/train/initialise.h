@@ -16,6 +16,6 @@ adcgs_status adcgs_initialise(adcgs_fmodel **out, const adcgs_scene *scene, cons
 /** Sets the poses of bodies as tracked; poses of other bodies are unchanged. */
 void adcgs_set_poses(adcgs_fmodel *f, const adcgs_stereo *found);
 /** Sets an anchor's lifetime, p->life to each side of p->t + p->shift, and its velocity, for a point p. */
-void adcgs_set_span(adcgs_fmodel *f, uint32_t anchor, const adcgs_stereo_point *point);
+void adcgs_set_lifetime(adcgs_fmodel *f, uint32_t anchor, const adcgs_stereo_point *point);
 
 #endif

@@ -9,7 +9,7 @@
 #include "train/state.h"
 
 /** Parameters for a frozen trainer: lambda_bit is strength times the run's loss per bit. ADCGS_ERR_USAGE if it is not frozen. */
-adcgs_status adcgs_level_prices(const adcgs_trainer *trainer, double strength, adcgs_rdo *rdo, adcgs_error *error);
+adcgs_status adcgs_level_costs(const adcgs_trainer *trainer, double strength, adcgs_rdo *rdo, adcgs_error *error);
 
 /**
  * Quantises the values of a frozen trainer again from the same unquantised values, with another strength (0: nearest levels).

@@ -23,7 +23,7 @@ extern const char *const adcgs_mechanism_names[ADCGS_MECHANISMS];
 /** The setting of each mechanism; 0 turns it off. */
 extern const char *const adcgs_mechanism_settings[ADCGS_MECHANISMS];
 
-/** True if a mechanism was dropped, by the text of adcgs_trials_tell() (" dropped=NAME,NAME"). */
+/** True if a mechanism was dropped, by the text of adcgs_trials_format() (" dropped=NAME,NAME"). */
 int adcgs_mechanism_is_dropped(int mechanism, const char *trials);
 
 #endif

@@ -73,7 +73,7 @@ static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error 
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
+adcgs_status adcgs_test_motion_gain(adcgs_trainer *t, adcgs_error *error)
 {
     const adcgs_fmodel *f = t->f;
     double stopped, moving;
@@ -88,7 +88,7 @@ adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
     const size_t weights = (f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n) / 10 + f->mlp[ADCGS_P_TIME].n;
     t->decisions.loss_still = stopped;
     t->decisions.loss_moving = moving;
-    if (stopped > 1.01 * moving + adcgs_price_of_bit(t) * 7 * (double)weights)
+    if (stopped > 1.01 * moving + adcgs_cost_of_bit(t) * 7 * (double)weights)
         return ADCGS_OK;
     memset(f->moving, 0, (size_t)f->groups * ADCGS_LANES * sizeof *f->moving);
     return ADCGS_OK;
@@ -106,13 +106,13 @@ static void clear_time_table(adcgs_fmodel *f)
 /** Makes an anchor static unless it is frozen. Returns 1 if it was moving. */
 static uint32_t rest(const adcgs_fmodel *f, uint32_t anchor)
 {
-    const int moved = f->moving[anchor] != 0 && f->learns[anchor] != 0;
+    const int moved = f->moving[anchor] != 0 && f->trainable[anchor] != 0;
     if (moved)
         f->moving[anchor] = 0;
     return (uint32_t)moved;
 }
 
-adcgs_status adcgs_rest_unchanging(adcgs_trainer *t, adcgs_error *error)
+adcgs_status adcgs_fix_unchanging(adcgs_trainer *t, adcgs_error *error)
 {
     const adcgs_fmodel *f = t->f;
     if (!adcgs_fmodel_moves(f) || !(t->config.static_threshold > 0))
@@ -138,7 +138,7 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
         if (effect[i] < t->config.static_threshold)
             t->decisions.unmoved += rest(f, i);
     if (status == ADCGS_OK)
-        status = adcgs_rest_unchanging(t, error);
+        status = adcgs_fix_unchanging(t, error);
     if (f->is_part && !adcgs_fmodel_moves(f))
         clear_time_table(f);
     adcgs_free(NULL, effect);
@@ -161,7 +161,7 @@ static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
         return adcgs_alloc_status(error);
     for (size_t i = 0; i < slots; i++) {
         const uint32_t anchor = adcgs_anchor_of(f, (uint32_t)i);
-        if (anchor >= f->n || f->keep[i] == 0 || f->learns[anchor] == 0)
+        if (anchor >= f->n || f->keep[i] == 0 || f->trainable[anchor] == 0)
             continue;
         const float there = t->stats.presence[anchor], opacity = t->stats.opacity[i];
         drawn += (double)t->stats.weight[i];
@@ -183,7 +183,7 @@ static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_decide(adcgs_trainer *t, adcgs_error *error)
+adcgs_status adcgs_prune_and_fix(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_fmodel *f = t->f;
     const int k = f->params.k;
@@ -199,7 +199,7 @@ adcgs_status adcgs_decide(adcgs_trainer *t, adcgs_error *error)
         int kept = 0;
         for (int j = 0; j < k; j++)
             kept += f->keep[adcgs_fmodel_slot(f, i, j)] > 0;
-        if (f->learns[i] == 0 || (kept && !adcgs_anchor_is_idle(t, i, 0.5)))
+        if (f->trainable[i] == 0 || (kept && !adcgs_anchor_is_idle(t, i, 0.5)))
             adcgs_anchor_set_add(&s, f->pos[i], i, 0);
     }
     t->decisions.idle += f->n - s.n;

@@ -12,15 +12,15 @@
  * Tests if motion is worth its bytes. If freezing time costs less image loss than the deformation networks cost in rate, all
  * anchors become static. Runs at rate_start, so that the rest of the run can compensate.
  */
-adcgs_status adcgs_weigh_motion(adcgs_trainer *trainer, adcgs_error *error);
+adcgs_status adcgs_test_motion_gain(adcgs_trainer *trainer, adcgs_error *error);
 
 /**
  * Makes anchors static that are rendered where the images of static cameras never change. Runs at rate_start, so that the rest of
- * the run can compensate. adcgs_decide() runs it again, because anchors have grown by then.
+ * the run can compensate. adcgs_prune_and_fix() runs it again, because anchors have grown by then.
  */
-adcgs_status adcgs_rest_unchanging(adcgs_trainer *trainer, adcgs_error *error);
+adcgs_status adcgs_fix_unchanging(adcgs_trainer *trainer, adcgs_error *error);
 
 /** Drops primitives without effect, and marks static anchors. */
-adcgs_status adcgs_decide(adcgs_trainer *trainer, adcgs_error *error);
+adcgs_status adcgs_prune_and_fix(adcgs_trainer *trainer, adcgs_error *error);
 
 #endif

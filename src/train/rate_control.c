@@ -45,8 +45,8 @@ static double networks_left(const adcgs_trainer *t)
     const adcgs_train_config *c = &t->config;
     const double again = (double)c->prune_units_again, first = (double)c->prune_units_at * c->iterations;
     double left = t->rounding ? 1 : LATTICES_LEAVE;
-    if (t->slimmed < 2 && again < (double)c->quant_round_start && adcgs_train_prunes_units(c))
-        left *= t->slimmed && first >= ADCGS_UNITS_AFTER ? UNITS_LEAVE_AGAIN : UNITS_LEAVE;
+    if (t->units_pruned < 2 && again < (double)c->quant_round_start && adcgs_train_prunes_units(c))
+        left *= t->units_pruned && first >= ADCGS_UNITS_AFTER ? UNITS_LEAVE_AGAIN : UNITS_LEAVE;
     return left;
 }
 

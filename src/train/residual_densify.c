@@ -71,7 +71,7 @@ static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error 
         return adcgs_alloc_status(error);
     l->more = l->off + plane;
     l->taken = l->more + plane;
-    ADCGS_TRY(adcgs_view_draw(t, &v->view, index, t->image, 0, error));
+    ADCGS_TRY(adcgs_view_render(t, &v->view, index, t->image, 0, error));
     const float *target;
     ADCGS_TRY(adcgs_trainer_target(t, index, NULL, &target, error));
     memcpy(l->taken, target, 3 * plane * sizeof *l->taken);

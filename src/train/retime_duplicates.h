@@ -9,9 +9,9 @@
 #include "train/state.h"
 
 /**
- * Sets trainer->doubled for reporting and, if configured, the timestamps of the training views in [0,1]. A duplicated image
- * (data/faults.h) gets the timestamp of the previous image. glances: of all training views.
+ * Sets trainer->duplicates for reporting and, if configured, the timestamps of the training views in [0,1]. A duplicated image
+ * (data/faults.h) gets the timestamp of the previous image. thumbnails: of all training views.
  */
-adcgs_status adcgs_doubled_find(adcgs_trainer *trainer, const adcgs_glance *glances, adcgs_error *error);
+adcgs_status adcgs_retime_duplicates(adcgs_trainer *trainer, const adcgs_thumbnail *thumbnails, adcgs_error *error);
 
 #endif

@@ -18,10 +18,10 @@ static adcgs_status view_loss(adcgs_trainer *t, uint32_t picked, int quarter, do
     adcgs_view v = t->views[picked].view;
     adcgs_loss_value value;
     const float *target;
-    const int whole = quarter < 0 || adcgs_pictures_hidden(t->pictures, picked);
+    const int whole = quarter < 0 || adcgs_image_store_mask(t->pictures, picked);
     if (!whole)
         adcgs_view_crop(&v, quarter & 1 ? v.width / 2 : 0, quarter & 2 ? v.height / 2 : 0, (v.width + 1) / 2, (v.height + 1) / 2);
-    ADCGS_TRY(adcgs_view_draw(t, &v, picked, t->image, 0, error));
+    ADCGS_TRY(adcgs_view_render(t, &v, picked, t->image, 0, error));
     ADCGS_TRY(adcgs_trainer_target(t, picked, NULL, &target, error));
     if (whole)
         ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
@@ -62,7 +62,7 @@ adcgs_status adcgs_sample_distortion(adcgs_trainer *t, int group, double *bits, 
     double loss;
     ADCGS_TRY(sample_loss(t, NETWORK_VIEWS, 1, t->divide == t->config.scale, &loss, error));
     /* Without a price of bits only the loss decides, since no number of bits comes close to it. */
-    *bits = loss / fmax(adcgs_price_of_bit(t), 1e-30);
+    *bits = loss / fmax(adcgs_cost_of_bit(t), 1e-30);
     return ADCGS_OK;
 }
 
@@ -71,7 +71,7 @@ static adcgs_status picture_psnr(adcgs_trainer *t, const adcgs_view *view, const
                                  adcgs_error *error)
 {
     const size_t values = 3 * (size_t)view->width * (size_t)view->height;
-    ADCGS_TRY(adcgs_view_draw(t, view, ADCGS_MEAN_LIGHT, image, 0, error));
+    ADCGS_TRY(adcgs_view_render(t, view, ADCGS_MEAN_LIGHT, image, 0, error));
     for (size_t i = 0; i < values; i++)
         image[i] = rintf(255 * fminf(fmaxf(image[i], 0), 1)) / 255;
     *psnr = adcgs_psnr(image, taken, values);
@@ -80,7 +80,7 @@ static adcgs_status picture_psnr(adcgs_trainer *t, const adcgs_view *view, const
 
 static adcgs_status loaded_psnr(adcgs_trainer *t, uint32_t index, double *psnr, adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_pictures_get(t->pictures, index, t->taken, error));
+    ADCGS_TRY(adcgs_image_store_get(t->pictures, index, t->taken, error));
     return picture_psnr(t, &t->views[index].view, t->taken, t->image, psnr, error);
 }
 

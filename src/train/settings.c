@@ -286,11 +286,11 @@ adcgs_status adcgs_train_changes(const adcgs_train_config *c, adcgs_buffer *text
 static void list_one(const adcgs_setting *s, const adcgs_train_config *c, FILE *file)
 {
     static const char letters[] = "SBQM";
-    char value[ADCGS_SETTING_TEXT], min[ADCGS_SETTING_TEXT], max[ADCGS_SETTING_TEXT], trades[] = "----";
+    char value[ADCGS_SETTING_TEXT], min[ADCGS_SETTING_TEXT], max[ADCGS_SETTING_TEXT], affects[] = "----";
     for (int i = 0; i < 4; i++)
-        if (s->trades & 1 << i)
-            trades[i] = letters[i];
-    fprintf(file, "  %-26s %-8s %s  %s (%s to %s)\n", s->name, adcgs_setting_print(s, adcgs_setting_get(s, c), value), trades,
+        if (s->affects & 1 << i)
+            affects[i] = letters[i];
+    fprintf(file, "  %-26s %-8s %s  %s (%s to %s)\n", s->name, adcgs_setting_print(s, adcgs_setting_get(s, c), value), affects,
             s->help, adcgs_setting_print(s, s->min, min), adcgs_setting_print(s, s->max, max));
 }
 
@@ -303,7 +303,7 @@ void adcgs_train_list(const adcgs_train_config *config, FILE *file)
         [ADCGS_SETTING_NETWORKS] = "Networks",
         [ADCGS_SETTING_STEPS] = "Grid and quantiser steps",
         [ADCGS_SETTING_ANCHORS] = "Anchors",
-        [ADCGS_SETTING_MOMENTS] = "Times, as fractions of the run; above 1: never",
+        [ADCGS_SETTING_TIMES] = "Times, as fractions of the run; above 1: never",
     };
     fprintf(file, "Settings of preset %s: name, value, effects, meaning, range.\n"
                   "S: speed, B: bytes of the file, Q: quality, M: memory in training.\n", config->preset);

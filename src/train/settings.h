@@ -29,15 +29,15 @@ typedef enum adcgs_setting_group {
     ADCGS_SETTING_NETWORKS,
     ADCGS_SETTING_STEPS,
     ADCGS_SETTING_ANCHORS,
-    ADCGS_SETTING_MOMENTS,
+    ADCGS_SETTING_TIMES,
     ADCGS_SETTING_SWITCHES, /**< changed by their own options, not by name */
 } adcgs_setting_group;
 
 /** The effects of a setting. */
-enum { ADCGS_TRADES_SPEED = 1, ADCGS_TRADES_BYTES = 2, ADCGS_TRADES_QUALITY = 4, ADCGS_TRADES_MEMORY = 8 };
+enum { ADCGS_AFFECTS_SPEED = 1, ADCGS_AFFECTS_BYTES = 2, ADCGS_AFFECTS_QUALITY = 4, ADCGS_AFFECTS_MEMORY = 8 };
 
 /** From when a setting binds a run. Before, a run may continue from a checkpoint with another value. */
-typedef enum adcgs_setting_binds { ADCGS_BINDS_ALWAYS, ADCGS_BINDS_WITH_LAMBDA, ADCGS_BINDS_WITH_ROUNDING } adcgs_setting_binds;
+typedef enum adcgs_setting_fixed { ADCGS_FIXED_ALWAYS, ADCGS_FIXED_WITH_LAMBDA, ADCGS_FIXED_WITH_ROUNDING } adcgs_setting_fixed;
 
 typedef struct adcgs_setting {
     const char *name;
@@ -45,8 +45,8 @@ typedef struct adcgs_setting {
     size_t offset;                 /**< of the field in the configuration */
     size_t own;                    /**< offset of the byte that is 1 if the user set the value; 0: none */
     adcgs_setting_group group;
-    adcgs_setting_binds binds;
-    int trades;
+    adcgs_setting_fixed fixed;
+    int affects;
     double min, max;               /**< range */
     double preset[ADCGS_PRESETS];  /**< in the order of adcgs_train_presets */
     const char *help;              /**< one line without full stop */

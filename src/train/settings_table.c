@@ -21,25 +21,25 @@ const char *const adcgs_train_presets[] = { "draft", "fast", "medium", "slow", "
              uint8_t : ADCGS_SETTING_UINT8)
 #define AT(field) offsetof(adcgs_train_config, field)
 
-#define S ADCGS_TRADES_SPEED
-#define B ADCGS_TRADES_BYTES
-#define Q ADCGS_TRADES_QUALITY
-#define M ADCGS_TRADES_MEMORY
+#define S ADCGS_AFFECTS_SPEED
+#define B ADCGS_AFFECTS_BYTES
+#define Q ADCGS_AFFECTS_QUALITY
+#define M ADCGS_AFFECTS_MEMORY
 #define WIDTH_MAX ADCGS_NET_WIDTH_MAX
 #define ALL(x) { x, x, x, x, x }
 #define BUT_PAPER(x, paper) { x, x, x, x, paper }
 
 /* A row: most settings bind a run from the start, and nothing depends on whether the user set them. */
-#define ROW(name, field, own, group, binds, trades, min, max, ...) \
-    { name, KIND(field), AT(field), own, ADCGS_SETTING_##group, ADCGS_BINDS_##binds, trades, min, max, __VA_ARGS__ }
+#define ROW(name, field, own, group, fixed, affects, min, max, ...) \
+    { name, KIND(field), AT(field), own, ADCGS_SETTING_##group, ADCGS_FIXED_##fixed, affects, min, max, __VA_ARGS__ }
 #define RUN(name, ...) ROW(#name, name, 0, RUN, ALWAYS, __VA_ARGS__)
 #define LOSS(name, ...) ROW(#name, name, 0, LOSS, ALWAYS, __VA_ARGS__)
 #define MODEL(name, ...) ROW(#name, params.name, 0, MODEL, ALWAYS, __VA_ARGS__)
 #define NETWORK(name, ...) ROW(#name, shape.name, AT(own_networks), NETWORKS, ALWAYS, __VA_ARGS__)
 #define STEP(name, ...) ROW(#name, shape.name, 0, STEPS, ALWAYS, __VA_ARGS__)
 #define ANCHOR(name, ...) ROW(#name, name, 0, ANCHORS, ALWAYS, __VA_ARGS__)
-#define MOMENT(name, trades, max, ...) ROW(#name, name, 0, MOMENTS, ALWAYS, trades, 0, max, __VA_ARGS__)
-#define SWITCH(name, binds, help) ROW(#name, name, 0, SWITCHES, binds, 0, 0, 1, ALL(0), help)
+#define TIME(name, affects, max, ...) ROW(#name, name, 0, TIMES, ALWAYS, affects, 0, max, __VA_ARGS__)
+#define SWITCH(name, fixed, help) ROW(#name, name, 0, SWITCHES, fixed, 0, 0, 1, ALL(0), help)
 
 const adcgs_setting adcgs_settings[] = {
     RUN(iterations, S | Q, 10, 1e7, { 3000, 20000, 40000, 100000, 80000 }, "iterations of the run, each one optimiser step"),
@@ -156,31 +156,31 @@ const adcgs_setting adcgs_settings[] = {
      * Curriculum: Bengio et al. 2009, ICML. Coarse to fine: Girish et al. 2024, EAGLES, ECCV. Noise in place of rounding: Balle
      * et al. 2017. Averages of the last iterations: Izmailov et al. 2018, Averaging weights, UAI.
      */
-    MOMENT(curriculum_begin, S | Q, 1, ALL(0.1), "share of the views that training begins with, around the middle of time"),
-    MOMENT(curriculum_until, S | Q, 2, BUT_PAPER(0.25, 0), "fraction of training from which all views are trained"),
-    MOMENT(lr_decay_start, S | Q, 2, BUT_PAPER(0.3, 0), "fraction of training at which learning rates begin to decay"),
-    MOMENT(quarter_size_until, S | Q, 2, BUT_PAPER(0.25, 0),
-           "fraction of training up to which images have a quarter of their size"),
-    MOMENT(half_size_until, S | Q, 2, BUT_PAPER(0.7, 0), "fraction of training up to which images have half of their size"),
-    MOMENT(deform_start, S | Q, 2, BUT_PAPER(0.01, 0.1), "fraction of training from which the scene is deformed over time"),
-    MOMENT(densify_start, S | B | Q, 2, BUT_PAPER(0.03, 0.0125),
-           "fraction of training from which anchors are densified and pruned"),
-    MOMENT(densify_until, S | B | Q, 2, BUT_PAPER(0.5, 0.3125), "fraction of training at which densification ends"),
-    MOMENT(quant_noise_start, B | Q, 2, BUT_PAPER(0.25, 0.125), "fraction of training from which noise stands for rounding"),
-    MOMENT(rate_start, B | Q, 2, BUT_PAPER(0.3, 0.125), "fraction of training from which the features' bits count in the loss"),
-    ROW("scale_reg_start", scale_reg_start, AT(own_scale_reg_start), MOMENTS, ALWAYS, S | Q, 0, 2, ALL(0.3),
+    TIME(curriculum_begin, S | Q, 1, ALL(0.1), "share of the views that training begins with, around the middle of time"),
+    TIME(curriculum_until, S | Q, 2, BUT_PAPER(0.25, 0), "fraction of training from which all views are trained"),
+    TIME(lr_decay_start, S | Q, 2, BUT_PAPER(0.3, 0), "fraction of training at which learning rates begin to decay"),
+    TIME(quarter_size_until, S | Q, 2, BUT_PAPER(0.25, 0),
+         "fraction of training up to which images have a quarter of their size"),
+    TIME(half_size_until, S | Q, 2, BUT_PAPER(0.7, 0), "fraction of training up to which images have half of their size"),
+    TIME(deform_start, S | Q, 2, BUT_PAPER(0.01, 0.1), "fraction of training from which the scene is deformed over time"),
+    TIME(densify_start, S | B | Q, 2, BUT_PAPER(0.03, 0.0125),
+         "fraction of training from which anchors are densified and pruned"),
+    TIME(densify_until, S | B | Q, 2, BUT_PAPER(0.5, 0.3125), "fraction of training at which densification ends"),
+    TIME(quant_noise_start, B | Q, 2, BUT_PAPER(0.25, 0.125), "fraction of training from which noise stands for rounding"),
+    TIME(rate_start, B | Q, 2, BUT_PAPER(0.3, 0.125), "fraction of training from which the features' bits count in the loss"),
+    ROW("scale_reg_start", scale_reg_start, AT(own_scale_reg_start), TIMES, ALWAYS, S | Q, 0, 2, ALL(0.3),
         "fraction of training from which the scale regulariser counts; 0 in dynamic scenes if several views share a timestamp"),
-    MOMENT(fine_start, S | Q, 2, BUT_PAPER(0.35, 0.1), "fraction of training from which the fine deformation is applied"),
-    MOMENT(prune_units_at, S | B | Q, 2, BUT_PAPER(0.52, 2),
-           "fraction of training at which hidden units not worth their bits are pruned, and networks' bits begin to count"),
-    MOMENT(prune_units_again, S | B | Q, 2, ALL(0.76), "fraction of training at which such hidden units are pruned again"),
-    MOMENT(prune_at, S | B | Q, 2, ALL(0.52),
-           "fraction of training at which unused primitives are pruned and unmoved anchors become static"),
-    MOMENT(tiers_start, B | Q, 2, ALL(0.6), "fraction of training at which anchors are sorted into tiers, not before prune_at"),
-    MOMENT(quant_round_start, B | Q, 2, ALL(0.85), "fraction of training from which values and weights are rounded"),
-    MOMENT(freeze_start, B | Q, 2, ALL(0.96), "fraction of training from which values are final and networks alone are trained"),
-    MOMENT(average_share, Q, 1, BUT_PAPER(0.05, 0),
-           "fraction of training over which parameters are averaged, before freezing and before the end"),
+    TIME(fine_start, S | Q, 2, BUT_PAPER(0.35, 0.1), "fraction of training from which the fine deformation is applied"),
+    TIME(prune_units_at, S | B | Q, 2, BUT_PAPER(0.52, 2),
+         "fraction of training at which hidden units not worth their bits are pruned, and networks' bits begin to count"),
+    TIME(prune_units_again, S | B | Q, 2, ALL(0.76), "fraction of training at which such hidden units are pruned again"),
+    TIME(prune_at, S | B | Q, 2, ALL(0.52),
+         "fraction of training at which unused primitives are pruned and unmoved anchors become static"),
+    TIME(tiers_start, B | Q, 2, ALL(0.6), "fraction of training at which anchors are sorted into tiers, not before prune_at"),
+    TIME(quant_round_start, B | Q, 2, ALL(0.85), "fraction of training from which values and weights are rounded"),
+    TIME(freeze_start, B | Q, 2, ALL(0.96), "fraction of training from which values are final and networks alone are trained"),
+    TIME(average_share, Q, 1, BUT_PAPER(0.05, 0),
+         "fraction of training over which parameters are averaged, before freezing and before the end"),
 
     SWITCH(without_coarse, ALWAYS, "no coarse deformation"),
     SWITCH(without_fine, ALWAYS, "no fine deformation"),

@@ -87,8 +87,8 @@ adcgs_status adcgs_share(adcgs_trainer *t, const adcgs_tree_part *own, int n_own
     size_t at[ADCGS_TREE_MOST + 1];
     ADCGS_TRY(begin_sharing(&s, t, error));
     for (int r = 0; r <= t->team->size; r++)
-        at[r] = adcgs_share_place(t, r) * sizeof *t->batch.seen;
-    ADCGS_TRY(adcgs_team_gather(t->team, t->batch.seen, at, error));
+        at[r] = adcgs_share_place(t, r) * sizeof *t->batch.results;
+    ADCGS_TRY(adcgs_team_gather(t->team, t->batch.results, at, error));
     ADCGS_TRY(swap_slices(&s, own, n_own, error));
     sum_slice(&s, own, n_own);
     for (int r = 0; r <= t->team->size; r++)

@@ -13,7 +13,8 @@
 /** First place of config.batch that a rank of the team processes; config.batch for the rank after the last. */
 uint32_t adcgs_share_place(const adcgs_trainer *trainer, int rank);
 /**
- * own: partial sums of this run's places. The first becomes the sum over all places, and batch.seen receives the results of all.
+ * own: partial sums of this run's places. The first becomes the sum over all places, and batch.results receives the results of
+ * all.
  */
 adcgs_status adcgs_share(adcgs_trainer *trainer, const adcgs_tree_part *own, int n_own, adcgs_error *error);
 

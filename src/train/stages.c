@@ -45,27 +45,27 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
     const adcgs_train_config *c = &t->config;
     if (progress >= adcgs_train_lambda_from(c))
         t->lambda_used = 1;
-    if (!t->rested && progress >= c->rate_start && !c->without_densification) {
-        t->rested = 1;
-        ADCGS_TRY(adcgs_rest_unchanging(t, error));
+    if (!t->fixed_unchanging && progress >= c->rate_start && !c->without_densification) {
+        t->fixed_unchanging = 1;
+        ADCGS_TRY(adcgs_fix_unchanging(t, error));
     }
-    if (!t->weighed && progress >= c->prune_at && !c->without_rate) { /* motion is found late, so not before prune_at */
-        t->weighed = 1;
+    if (!t->motion_tested && progress >= c->prune_at && !c->without_rate) { /* motion is found late, so not before prune_at */
+        t->motion_tested = 1;
         if (t->iteration >= WEIGH_AFTER)
-            ADCGS_TRY(adcgs_weigh_motion(t, error));
+            ADCGS_TRY(adcgs_test_motion_gain(t, error));
     }
-    if (t->slimmed < 2 && progress >= (t->slimmed ? c->prune_units_again : c->prune_units_at) && !c->without_rate) {
-        t->slimmed++;
+    if (t->units_pruned < 2 && progress >= (t->units_pruned ? c->prune_units_again : c->prune_units_at) && !c->without_rate) {
+        t->units_pruned++;
         adcgs_drop_floaters(t);
         if (t->iteration >= ADCGS_UNITS_AFTER)
             ADCGS_TRY(adcgs_prune_units(t, error));
     }
-    if (!t->decided && progress >= c->prune_at) {
-        t->decided = 1;
+    if (!t->pruned && progress >= c->prune_at) {
+        t->pruned = 1;
         if (!c->without_densification)
-            ADCGS_TRY(adcgs_decide(t, error));
+            ADCGS_TRY(adcgs_prune_and_fix(t, error));
     }
-    if (!t->tiered && progress >= c->tiers_start && t->decided && !t->f->follows) {
+    if (!t->tiered && progress >= c->tiers_start && t->pruned && !t->f->follows) {
         t->tiered = 1;
         ADCGS_TRY(adcgs_tiers_assign(t, error));
     }
@@ -125,7 +125,7 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
     ADCGS_TRY(load_views(t, progress, error));
     t->torn = 1;
     adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);
-    ADCGS_TRY(adcgs_release_step(t, progress, error));
+    ADCGS_TRY(adcgs_unfreeze_step(t, progress, error));
     const int grows = !c->without_densification && t->iteration && t->iteration % c->densify_interval == 0 &&
                       progress >= c->densify_start && progress < c->densify_until;
     if (grows)

@@ -310,7 +310,7 @@ static adcgs_status find_points(adcgs_start_points *c, const sight *s, const adc
         given_points(c, s, given ? all - moving : all);
     if (c->n >= ADCGS_POINTS_LEAST && !moving)
         return ADCGS_OK;
-    matched_points(c, found, all, config->params.spans, adcgs_half_life(config, found));
+    matched_points(c, found, all, config->params.spans, adcgs_half_lifetime(config, found));
     if (given)
         return ADCGS_OK;
     random_points(c, s, found, config->start_anchors, config->seed);
@@ -335,7 +335,7 @@ adcgs_status adcgs_start_points_find(adcgs_start_points *c, const adcgs_scene *s
 
 /* ---- Matching ---- */
 
-float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *found)
+float adcgs_half_lifetime(const adcgs_train_config *config, const adcgs_stereo *found)
 {
     return (found->monocular ? MONOCULAR_LIFETIMES : 1) * config->lifetime_frames * fmaxf(adcgs_stereo_spacing(found),
                                                                                           SPACING_LEAST);
@@ -362,7 +362,7 @@ static adcgs_status goes_far(const adcgs_stereo *found, int *far, adcgs_error *e
 /** Sets initial lifetimes: symmetric, except at known ends. Known ends do not apply to points of bodies. */
 static void set_lives(adcgs_stereo *found, const adcgs_train_config *config)
 {
-    const float half = adcgs_half_life(config, found);
+    const float half = adcgs_half_lifetime(config, found);
     for (uint32_t i = 0; i < found->n_moving; i++) {
         adcgs_stereo_point *p = &found->moving[i];
         const int ends = config->lifetime_trim && !p->body;

@@ -26,7 +26,7 @@ typedef struct adcgs_start_points {
 adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene *scene, adcgs_train_config *config,
                                adcgs_pool *pool, adcgs_error *error);
 /** Half lifetime of independently moving points, 1: whole duration. */
-float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *found);
+float adcgs_half_lifetime(const adcgs_train_config *config, const adcgs_stereo *found);
 /**
  * Finds at most config->start_anchors points. found, which may be empty, must outlive them. The caller clears them, after a
  * failure too.

@@ -39,7 +39,7 @@ void adcgs_train_batch_forget(adcgs_train_batch *b)
         adcgs_free(NULL, b->sum[i]);
     adcgs_free(NULL, b->means);
     adcgs_free(NULL, b->room);
-    *b = (adcgs_train_batch){ .seen = b->seen };
+    *b = (adcgs_train_batch){ .results = b->results };
 }
 
 adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
@@ -65,9 +65,9 @@ static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
 {
     t->n_views = t->scene->n_views[ADCGS_SPLIT_TRAIN];
     t->views = adcgs_alloc(NULL, t->n_views, sizeof *t->views, error);
-    t->batch.seen = adcgs_alloc(NULL, t->config.batch, sizeof *t->batch.seen, error);
+    t->batch.results = adcgs_alloc(NULL, t->config.batch, sizeof *t->batch.results, error);
     float *times = adcgs_alloc(NULL, t->n_views, sizeof *times, error);
-    adcgs_status status = t->views && t->batch.seen && times ? ADCGS_OK : adcgs_alloc_status(error);
+    adcgs_status status = t->views && t->batch.results && times ? ADCGS_OK : adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++)
         times[i] = t->views[i].t = adcgs_trainer_time(t, t->scene->views[ADCGS_SPLIT_TRAIN][i].time);
     if (status == ADCGS_OK)
@@ -99,7 +99,7 @@ static adcgs_status follow(adcgs_trainer *t, const adcgs_model *before, adcgs_er
 {
     t->config.params = before->params;
     adcgs_model_digest(before, t->before);
-    return adcgs_follow(&t->f, before, &t->config, &t->stereo, t->scene->duration, t->cpu, error);
+    return adcgs_continue_segment(&t->f, before, &t->config, &t->stereo, t->scene->duration, t->cpu, error);
 }
 
 /**
@@ -114,7 +114,7 @@ static adcgs_status choose_smooth_time(adcgs_params *params, const adcgs_scene *
     uint32_t *of = adcgs_alloc(NULL, n, sizeof *of, error), cameras = 0;
     if (!of)
         return adcgs_alloc_status(error);
-    const adcgs_status status = adcgs_sort_by_camera(whole->views[ADCGS_SPLIT_TRAIN], n, of, NULL, &cameras, error);
+    const adcgs_status status = adcgs_group_views(whole->views[ADCGS_SPLIT_TRAIN], n, of, NULL, &cameras, error);
     adcgs_free(NULL, of);
     params->smooth_time &= (uint64_t)2 * n < (uint64_t)cameras * whole->n_times;
     return status;
@@ -228,7 +228,7 @@ adcgs_status adcgs_trainer_create_matched(adcgs_trainer **out, const adcgs_scene
 
 void adcgs_views_unload(adcgs_trainer *t)
 {
-    adcgs_pictures_free(&t->pictures);
+    adcgs_image_store_free(&t->pictures);
     adcgs_free(NULL, t->image);
     adcgs_free(NULL, t->grad);
     adcgs_free(NULL, t->taken);
@@ -255,7 +255,7 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_stereo_clear(&t->stereo);
     adcgs_viewpoints_clear(&t->viewpoints);
     adcgs_train_batch_forget(&t->batch);
-    adcgs_free(NULL, t->batch.seen);
+    adcgs_free(NULL, t->batch.results);
     adcgs_weight_average_clear(&t->average);
     adcgs_buffer_clear(&t->snapshot);
     adcgs_buffer_clear(&t->begin);

@@ -46,15 +46,15 @@ size_t adcgs_train_stats_size(const adcgs_fmodel *f);
 adcgs_train_stats adcgs_train_stats_at(float *numbers, const adcgs_fmodel *f);
 
 /** Results of a view pass in addition to gradients and statistics. */
-typedef struct adcgs_seen {
+typedef struct adcgs_view_result {
     double loss, mse;
     double bits[ADCGS_GROUPS]; /* 0 if rate is not in the loss */
     adcgs_exposure_sums sums;  /* 0 if exposure is not updated */
-} adcgs_seen;
+} adcgs_view_result;
 
 /** View passes of an iteration; see batch.h. */
 typedef struct adcgs_train_batch {
-    adcgs_seen *seen;               /* [config.batch] */
+    adcgs_view_result *results;     /* [config.batch] */
     float *sum[ADCGS_TREE_PARTS];   /* [size] gradients and statistics, if there are several passes */
     size_t size;
     float *means;                   /* means of the pass before the iteration */
@@ -83,13 +83,13 @@ typedef struct adcgs_trainer {
     adcgs_stereo stereo;
     uint32_t n_views;
     adcgs_train_view *views;
-    adcgs_pictures *pictures; /* of the training views */
+    adcgs_image_store *pictures; /* of the training views */
     int divide;              /* of the loaded views; 0: none */
     uint64_t picture_memory; /* maximum bytes of them; 0: half of the machine's memory */
-    adcgs_pictures_progress loading; /* called for each loaded image, or NULL */
+    adcgs_image_store_progress loading; /* called for each loaded image, or NULL */
     void *loading_user;
-    adcgs_glance *glances;   /* [n_views] of loaded images, owned by the caller; NULL: not wanted */
-    adcgs_fault doubled;     /* duplicated images, if they were searched */
+    adcgs_thumbnail *thumbnails; /* [n_views] of loaded images, owned by the caller; NULL: not wanted */
+    adcgs_fault duplicates;  /* duplicated images, if they were searched */
     float *image, *grad;
     float *taken;            /* recorded image of the current view */
     adcgs_train_stats stats;
@@ -103,8 +103,8 @@ typedef struct adcgs_trainer {
     /* State in checkpoints in addition to the model. */
     uint32_t iteration;
     uint8_t lambda_used;     /* 1: lambda has affected the run and must not change */
-    uint8_t rested, weighed, slimmed, decided, tiered, rounding, frozen;
-    uint8_t released; /* number of times that anchors were tested for unfreezing */
+    uint8_t fixed_unchanging, motion_tested, units_pruned, pruned, tiered, rounding, frozen;
+    uint8_t unfreeze_tests; /* number of times that anchors were tested for unfreezing */
     uint8_t before[16]; /* digest of the previous segment's model; 0 without one */
     float lr_scale;
     double contrast; /* of the initial training images; 0: unknown */
@@ -154,7 +154,7 @@ float adcgs_trainer_time(const adcgs_trainer *trainer, double seconds);
 double adcgs_trainer_progress(const adcgs_trainer *trainer);
 
 /** Loss per bit: lambda is the loss per mebibyte. */
-static inline double adcgs_price_of_bit(const adcgs_trainer *t)
+static inline double adcgs_cost_of_bit(const adcgs_trainer *t)
 {
     return t->lambda * 0x1p-23;
 }

@@ -41,7 +41,7 @@ static float weight_price(const adcgs_trainer *t, double progress)
 {
     const adcgs_train_config *c = &t->config;
     const int landed = t->frozen && c->target == ADCGS_TARGET_SIZE;
-    return progress >= c->prune_units_at && !c->without_rate && !landed ? c->network_rate * (float)adcgs_price_of_bit(t) : 0;
+    return progress >= c->prune_units_at && !c->without_rate && !landed ? c->network_rate * (float)adcgs_cost_of_bit(t) : 0;
 }
 
 /**
@@ -66,7 +66,7 @@ static void hold_settled(adcgs_fmodel *f, int group)
     float *g = f->param[group].g;
     for (size_t tile = 0; tile < rows * f->groups; tile++, g += ADCGS_LANES)
         for (size_t l = 0; l < ADCGS_LANES; l++)
-            g[l] *= f->learns[tile / rows * ADCGS_LANES + l];
+            g[l] *= f->trainable[tile / rows * ADCGS_LANES + l];
 }
 
 /**
@@ -126,9 +126,9 @@ static int averages(const adcgs_trainer *t, double progress)
 static void note_means(adcgs_trainer *t, int rated)
 {
     const double keep = !t->iteration ? 0 : t->iteration < 100 ? 0.9 : 0.99;
-    adcgs_seen mean = { .loss = 0 };
+    adcgs_view_result mean = { .loss = 0 };
     for (uint32_t i = 0; i < t->config.batch; i++) {
-        const adcgs_seen *seen = &t->batch.seen[i];
+        const adcgs_view_result *seen = &t->batch.results[i];
         mean.loss += seen->loss / t->config.batch;
         mean.mse += seen->mse / t->config.batch;
         for (int j = 0; j < ADCGS_GROUPS; j++)
@@ -143,8 +143,8 @@ static void note_means(adcgs_trainer *t, int rated)
 
 adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_batch_look(t, progress, error));
-    note_means(t, adcgs_look_is_rated(t, progress));
+    ADCGS_TRY(adcgs_batch_run(t, progress, error));
+    note_means(t, adcgs_view_pass_has_rate(t, progress));
     update(t, progress);
     t->iteration++;
     return averages(t, progress) ? adcgs_weight_average_add(&t->average, t->f, error) : ADCGS_OK;

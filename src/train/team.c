@@ -4,7 +4,7 @@
 
 #include "train/tree_sum.h"
 
-adcgs_status adcgs_team_tell(const adcgs_team *team, void *data, size_t bytes, adcgs_error *error)
+adcgs_status adcgs_team_broadcast(const adcgs_team *team, void *data, size_t bytes, adcgs_error *error)
 {
     adcgs_ranks_part parts[ADCGS_TREE_MOST];
     const int n = !team ? 0 : team->rank ? 1 : team->size - 1;

@@ -17,7 +17,7 @@ typedef struct adcgs_team {
 } adcgs_team;
 
 /** Broadcasts data from rank 0. Does nothing without a team (NULL). */
-adcgs_status adcgs_team_tell(const adcgs_team *team, void *data, size_t bytes, adcgs_error *error);
+adcgs_status adcgs_team_broadcast(const adcgs_team *team, void *data, size_t bytes, adcgs_error *error);
 /** Gathers data: rank r contributes bytes at[r] to at[r + 1], and all ranks receive the whole. at: [size + 1] */
 adcgs_status adcgs_team_gather(const adcgs_team *team, void *data, const size_t *at, adcgs_error *error);
 /** The same with equal sizes of `bytes`. */

@@ -39,7 +39,7 @@ static adcgs_status ask_view(adcgs_trainer *t, batch *b, uint32_t index, adcgs_e
     const adcgs_view *v = &t->views[index].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
     const float *taken;
-    ADCGS_TRY(adcgs_view_draw(t, v, index, t->image, 0, error));
+    ADCGS_TRY(adcgs_view_render(t, v, index, t->image, 0, error));
     ADCGS_TRY(adcgs_trainer_target(t, index, NULL, &taken, error));
     for (uint32_t i = 0; i < b->n; i++) {
         const double *place = b->point[i].x;
@@ -83,8 +83,8 @@ static uint32_t choose(const batch *b, adcgs_ranked *list, const adcgs_stereo_po
     return n;
 }
 
-adcgs_status adcgs_moment_find(adcgs_trainer *t, const adcgs_stereo_point **points, uint32_t most, uint32_t *n,
-                               adcgs_error *error)
+adcgs_status adcgs_temporal_densify_find(adcgs_trainer *t, const adcgs_stereo_point **points, uint32_t most, uint32_t *n,
+                                         adcgs_error *error)
 {
     const adcgs_stereo *s = &t->stereo;
     *n = 0;

@@ -12,7 +12,7 @@
  * Finds the points with the largest gain in the views of a few frames, which differ between calls. *n: their number, at most
  * `most`.
  */
-adcgs_status adcgs_moment_find(adcgs_trainer *trainer, const adcgs_stereo_point **points, uint32_t most, uint32_t *n,
-                               adcgs_error *error);
+adcgs_status adcgs_temporal_densify_find(adcgs_trainer *trainer, const adcgs_stereo_point **points, uint32_t most, uint32_t *n,
+                                         adcgs_error *error);
 
 #endif

@@ -58,7 +58,7 @@ static adcgs_status draw(const survey *s, const lookout *l, int tiers, float *im
     const adcgs_pass_mode mode = { .deform = ADCGS_DEFORM_ALL };
     adcgs_pass_forward(s->t->pass, s->t->f, l->t, &mode);
     show(s->t, tiers);
-    return adcgs_view_draw(s->t, &l->view, ADCGS_MEAN_LIGHT, image, keep, error);
+    return adcgs_view_render(s->t, &l->view, ADCGS_MEAN_LIGHT, image, keep, error);
 }
 
 /** Sets a training view, reduced by an integer if it is large. */
@@ -148,7 +148,7 @@ static adcgs_status change_of_anchors(survey *s, const lookout *l, adcgs_error *
     adcgs_trainer *t = s->t;
     adcgs_raster_grads grads = t->pass->grads;
     grads.screen = NULL;
-    ADCGS_TRY(adcgs_view_draw_back(t, &l->view, ADCGS_MEAN_LIGHT, &grads, error));
+    ADCGS_TRY(adcgs_view_backward(t, &l->view, ADCGS_MEAN_LIGHT, &grads, error));
     memset(s->change, 0, t->f->n * sizeof *s->change);
     for (uint32_t i = 0; i < t->pass->primitives.n; i++)
         if (t->pass->primitives.opacity[i] > 0)
@@ -238,7 +238,7 @@ adcgs_status adcgs_tiers_fit(adcgs_trainer *t, adcgs_error *error)
     return status;
 }
 
-adcgs_status adcgs_tiers_learn(adcgs_trainer *t, uint32_t view, const adcgs_pass_mode *mode, adcgs_error *error)
+adcgs_status adcgs_tiers_train(adcgs_trainer *t, uint32_t view, const adcgs_pass_mode *mode, adcgs_error *error)
 {
     const adcgs_fmodel *f = t->f;
     const uint64_t draw = adcgs_random64(t->config.seed, 3001, t->iteration);
@@ -253,10 +253,10 @@ adcgs_status adcgs_tiers_learn(adcgs_trainer *t, uint32_t view, const adcgs_pass
     grads.screen = NULL;
     adcgs_pass_forward(t->pass, f, t->views[view].t, mode);
     show(t, tiers);
-    ADCGS_TRY(adcgs_view_draw(t, v, view, t->image, 1, error));
+    ADCGS_TRY(adcgs_view_render(t, v, view, t->image, 1, error));
     ADCGS_TRY(adcgs_trainer_target(t, view, NULL, &target, error));
     ADCGS_TRY(adcgs_trainer_loss(t, view, target, &value, error));
-    ADCGS_TRY(adcgs_view_draw_back(t, v, view, &grads, error));
+    ADCGS_TRY(adcgs_view_backward(t, v, view, &grads, error));
     const float weight = t->config.tier_weight, factor = weight * adcgs_step_factor(f->growth[tiers - 1]);
     const size_t n = t->pass->primitives.n;
     for (size_t i = 0; i < ADCGS_ROWS * n; i++) /* scales were multiplied by the growth in show() */

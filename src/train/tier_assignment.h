@@ -17,6 +17,6 @@ adcgs_status adcgs_tiers_fit(adcgs_trainer *trainer, adcgs_error *error);
  * Called in some iterations after the backward pass: adds the gradients of this view's render without the later tiers. mode: of
  * the iteration's forward pass.
  */
-adcgs_status adcgs_tiers_learn(adcgs_trainer *trainer, uint32_t view, const adcgs_pass_mode *mode, adcgs_error *error);
+adcgs_status adcgs_tiers_train(adcgs_trainer *trainer, uint32_t view, const adcgs_pass_mode *mode, adcgs_error *error);
 
 #endif

@@ -11,15 +11,15 @@
 
 static adcgs_status load_pictures(adcgs_trainer *t, int divide, adcgs_error *error)
 {
-    adcgs_glance *own = NULL;
-    if (t->config.retime_duplicates && !t->glances && !(own = adcgs_alloc(NULL, t->n_views, sizeof *own, error)))
+    adcgs_thumbnail *own = NULL;
+    if (t->config.retime_duplicates && !t->thumbnails && !(own = adcgs_alloc(NULL, t->n_views, sizeof *own, error)))
         return adcgs_alloc_status(error);
-    adcgs_glance *const glances = own ? own : t->glances;
-    const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
-                                           .progress = t->loading, .user = t->loading_user, .glances = glances };
-    adcgs_status status = adcgs_pictures_load(&t->pictures, t->scene, &config, t->pool, error);
-    if (status == ADCGS_OK && glances)
-        status = adcgs_doubled_find(t, glances, error);
+    adcgs_thumbnail *const thumbnails = own ? own : t->thumbnails;
+    const adcgs_image_store_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
+                                              .progress = t->loading, .user = t->loading_user, .thumbnails = thumbnails };
+    adcgs_status status = adcgs_image_store_load(&t->pictures, t->scene, &config, t->pool, error);
+    if (status == ADCGS_OK && thumbnails)
+        status = adcgs_retime_duplicates(t, thumbnails, error);
     adcgs_free(NULL, own);
     return status;
 }
@@ -30,7 +30,7 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
     adcgs_views_unload(t);
     ADCGS_TRY(load_pictures(t, divide, error));
     for (uint32_t i = 0; i < t->n_views; i++) {
-        const adcgs_camera *camera = adcgs_pictures_camera(t->pictures, i);
+        const adcgs_camera *camera = adcgs_image_store_camera(t->pictures, i);
         const adcgs_status status = adcgs_view_init(&t->views[i].view, camera, t->origin, t->scale, error);
         ADCGS_TRY(adcgs_camera_path_rendered(camera, status, error));
         most = ADCGS_MAX(most, (size_t)camera->width * (size_t)camera->height);
@@ -47,7 +47,7 @@ adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, adcgs_exposur
 {
     const adcgs_view *v = &t->views[view].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
-    ADCGS_TRY(adcgs_pictures_get(t->pictures, view, t->taken, error));
+    ADCGS_TRY(adcgs_image_store_get(t->pictures, view, t->taken, error));
     if (t->exposure.n && sums)
         adcgs_exposure_sum(&t->exposure, view, t->image, t->taken, plane, sums);
     if (t->exposure.n) {
@@ -55,7 +55,7 @@ adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, adcgs_exposur
         adcgs_exposure_allow_burnt(&t->exposure, view, t->image, t->scene->has_alpha ? t->scene->background : NULL, t->taken,
                                    plane);
     }
-    const uint8_t *const hidden = adcgs_pictures_hidden(t->pictures, view);
+    const uint8_t *const hidden = adcgs_image_store_mask(t->pictures, view);
     for (size_t i = 0; hidden && i < plane; i++)
         for (size_t c = 0; hidden[i] && c < 3; c++)
             t->taken[c * plane + i] = t->image[c * plane + i];
@@ -67,7 +67,7 @@ adcgs_status adcgs_trainer_loss(adcgs_trainer *t, uint32_t view, const float *ta
 {
     const adcgs_view *v = &t->views[view].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
-    const uint8_t *const hidden = adcgs_pictures_hidden(t->pictures, view);
+    const uint8_t *const hidden = adcgs_image_store_mask(t->pictures, view);
     const adcgs_loss_shares shares = { t->config.ssim_weight, t->config.l2_share };
     size_t known = plane;
     ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->width, v->height, &shares, t->grad, value, error));
@@ -124,15 +124,15 @@ static void backdrop_of(const adcgs_trainer *t, uint32_t of, float backdrop[3])
         adcgs_exposure_even(&t->exposure, of, t->scene->background, backdrop, 1);
 }
 
-adcgs_status adcgs_view_draw(adcgs_trainer *t, const adcgs_view *view, uint32_t of, float *image, int keep, adcgs_error *error)
+adcgs_status adcgs_view_render(adcgs_trainer *t, const adcgs_view *view, uint32_t of, float *image, int keep, adcgs_error *error)
 {
     float backdrop[3];
     backdrop_of(t, of, backdrop);
     return adcgs_raster_forward(t->raster, &t->pass->primitives, view, backdrop, ADCGS_SCREEN_FILTER, image, keep, error);
 }
 
-adcgs_status adcgs_view_draw_back(adcgs_trainer *t, const adcgs_view *view, uint32_t of, adcgs_raster_grads *grads,
-                                  adcgs_error *error)
+adcgs_status adcgs_view_backward(adcgs_trainer *t, const adcgs_view *view, uint32_t of, adcgs_raster_grads *grads,
+                                 adcgs_error *error)
 {
     float backdrop[3];
     backdrop_of(t, of, backdrop);

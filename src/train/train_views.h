@@ -38,16 +38,16 @@ adcgs_status adcgs_trainer_loss_crop(adcgs_trainer *trainer, uint32_t view, cons
  * Renders the primitives of the last forward pass into image [3][height][width]. trainer->image is large enough for every
  * training view. of: the training view whose target the image is compared with, or ADCGS_MEAN_LIGHT. An image with alpha is
  * composited before its gain is known, so the background of its target is divided by the gain. The render uses the same
- * background; otherwise the model would grow haze in front of the camera. keep: 1 if adcgs_view_draw_back() follows.
+ * background; otherwise the model would grow haze in front of the camera. keep: 1 if adcgs_view_backward() follows.
  */
-adcgs_status adcgs_view_draw(adcgs_trainer *trainer, const adcgs_view *view, uint32_t of, float *image, int keep,
-                             adcgs_error *error);
+adcgs_status adcgs_view_render(adcgs_trainer *trainer, const adcgs_view *view, uint32_t of, float *image, int keep,
+                               adcgs_error *error);
 /**
  * Computes gradients of the primitives from trainer->grad, the gradient of trainer->image, for the last render of the same view
  * with keep.
  */
-adcgs_status adcgs_view_draw_back(adcgs_trainer *trainer, const adcgs_view *view, uint32_t of, adcgs_raster_grads *grads,
-                                  adcgs_error *error);
+adcgs_status adcgs_view_backward(adcgs_trainer *trainer, const adcgs_view *view, uint32_t of, adcgs_raster_grads *grads,
+                                 adcgs_error *error);
 
 /**
  * The view of a view pass. Once the curriculum covers all of time, every epoch visits each view once, in its own order (a Feistel

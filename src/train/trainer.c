@@ -163,7 +163,7 @@ int adcgs_trainer_moves(const adcgs_trainer *t)
 static adcgs_status take_time(adcgs_trainer *t, adcgs_time begin, adcgs_error *error)
 {
     t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
-    return t->config.time_limit > 0 ? adcgs_team_tell(t->team, &t->elapsed, sizeof t->elapsed, error) : ADCGS_OK;
+    return t->config.time_limit > 0 ? adcgs_team_broadcast(t->team, &t->elapsed, sizeof t->elapsed, error) : ADCGS_OK;
 }
 
 typedef struct reports {
@@ -184,7 +184,7 @@ static adcgs_status tell(const adcgs_trainer *t, reports *r, double progress, in
     r->last = at;
     fill_report(t, progress, r->rate, &report);
     *stops = r->observe && r->observe(r->user, &report);
-    return adcgs_team_tell(t->team, stops, sizeof *stops, error);
+    return adcgs_team_broadcast(t->team, stops, sizeof *stops, error);
 }
 
 /** Finishes the run. The end must not be applied twice: if it, or writing its result, fails, the state before it is saved. */

@@ -128,7 +128,7 @@ static adcgs_status judge_view(adcgs_trainer *t, const adcgs_scene_view *v, int 
     adcgs_status status = image ? adcgs_view_init(&view, &camera, t->origin, t->scale, error) : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         adcgs_pass_forward(t->pass, t->f, adcgs_trainer_time(t, v->time), &mode);
-        status = adcgs_view_draw(t, &view, ADCGS_MEAN_LIGHT, image, 0, error);
+        status = adcgs_view_render(t, &view, ADCGS_MEAN_LIGHT, image, 0, error);
     }
     if (status == ADCGS_OK && fits)
         adcgs_fit_levels(image + 3 * plane, image, taken, plane);
@@ -288,7 +288,7 @@ adcgs_status adcgs_trials_run(adcgs_trials *out, adcgs_train_config *config, con
     return status == ADCGS_OK ? apply(out, config, error) : status;
 }
 
-void adcgs_trials_tell(const adcgs_trials *t, char text[ADCGS_TRIALS_TEXT])
+void adcgs_trials_format(const adcgs_trials *t, char text[ADCGS_TRIALS_TEXT])
 {
     size_t n = 0;
     text[0] = '\0';

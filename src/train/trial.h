@@ -37,7 +37,7 @@ typedef int (*adcgs_trials_progress)(void *user, const char *without, uint32_t d
 typedef struct adcgs_trials_options {
     adcgs_cpu_level cpu;
     adcgs_pool *pool;
-    uint64_t memory;      /**< maximum bytes of images, as in adcgs_pictures_config */
+    uint64_t memory;      /**< maximum bytes of images, as in adcgs_image_store_config */
     adcgs_trials_progress progress; /**< or NULL */
     void *user;
 } adcgs_trials_options;
@@ -53,6 +53,6 @@ adcgs_status adcgs_trials_run(adcgs_trials *out, adcgs_train_config *config, con
                               const adcgs_trials_options *options, adcgs_error *error);
 
 /** "views=12 iterations=400 gains=24.13/24.60 ... dropped=gains" (with/without), for a stream; "" without trials. */
-void adcgs_trials_tell(const adcgs_trials *trials, char text[ADCGS_TRIALS_TEXT]);
+void adcgs_trials_format(const adcgs_trials *trials, char text[ADCGS_TRIALS_TEXT]);
 
 #endif

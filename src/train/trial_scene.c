@@ -88,11 +88,11 @@ static adcgs_status split(adcgs_scene *s, adcgs_error *error)
     uint32_t cameras = 0, *of = adcgs_alloc(NULL, n, sizeof *of, error);
     if (!of)
         return adcgs_alloc_status(error);
-    const adcgs_status status = adcgs_sort_by_camera(s->views[ADCGS_SPLIT_TRAIN], n, of, NULL, &cameras, error);
+    const adcgs_status status = adcgs_group_views(s->views[ADCGS_SPLIT_TRAIN], n, of, NULL, &cameras, error);
     if (status == ADCGS_OK)
         hold_back(s, of, cameras);
     adcgs_free(NULL, of);
-    return status == ADCGS_OK ? adcgs_scene_part_moments(s, error) : status;
+    return status == ADCGS_OK ? adcgs_scene_part_count_times(s, error) : status;
 }
 
 adcgs_status adcgs_trial_scene_make(adcgs_trial_scene *out, const adcgs_scene *scene, adcgs_error *error)

@@ -21,7 +21,7 @@ static adcgs_status find_changing(const adcgs_trainer *t, const uint32_t *view, 
     ADCGS_TRY(adcgs_changes_create(&changes, t->views[view[0]].view.width, t->views[view[0]].view.height, error));
     adcgs_status status = ADCGS_OK;
     for (uint32_t i = 0; status == ADCGS_OK && i < n; i++) {
-        status = adcgs_pictures_get(t->pictures, view[i], t->taken, error);
+        status = adcgs_image_store_get(t->pictures, view[i], t->taken, error);
         if (status == ADCGS_OK)
             adcgs_changes_add(changes, t->taken);
     }
@@ -42,11 +42,11 @@ static adcgs_status add_picture(adcgs_trainer *t, const adcgs_train_view *v, con
     adcgs_raster_grads grads = t->pass->grads;
     grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
-    ADCGS_TRY(adcgs_view_draw(t, &v->view, ADCGS_MEAN_LIGHT, t->image, 1, error));
+    ADCGS_TRY(adcgs_view_render(t, &v->view, ADCGS_MEAN_LIGHT, t->image, 1, error));
     memset(t->grad, 0, 3 * pixels * sizeof *t->grad);
     for (size_t i = 0; i < pixels; i++)
         t->grad[i] = region[i];
-    ADCGS_TRY(adcgs_view_draw_back(t, &v->view, ADCGS_MEAN_LIGHT, &grads, error));
+    ADCGS_TRY(adcgs_view_backward(t, &v->view, ADCGS_MEAN_LIGHT, &grads, error));
     for (uint32_t i = 0; i < t->pass->primitives.n; i++) {
         const uint32_t anchor = adcgs_anchor_of(t->f, i);
         if (anchor >= t->f->n)
@@ -76,7 +76,7 @@ static adcgs_status add_cameras(adcgs_trainer *t, uint32_t *of, uint32_t *order,
                                 adcgs_error *error)
 {
     uint32_t cameras, n;
-    ADCGS_TRY(adcgs_sort_by_camera(t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, of, order, &cameras, error));
+    ADCGS_TRY(adcgs_group_views(t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, of, order, &cameras, error));
     for (uint32_t i = 0; i < t->n_views; i += n) {
         n = 1;
         while (i + n < t->n_views && of[order[i + n]] == of[order[i]])

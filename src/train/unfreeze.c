@@ -52,11 +52,11 @@ static adcgs_status add_view(adcgs_trainer *t, moments *m, uint32_t index, adcgs
     const size_t values = 3 * (size_t)v->view.width * (size_t)v->view.height;
     const adcgs_raster_grads *g = &t->pass->grads;
     const float *taken;
-    ADCGS_TRY(adcgs_view_draw(t, &v->view, index, t->image, 1, error));
+    ADCGS_TRY(adcgs_view_render(t, &v->view, index, t->image, 1, error));
     ADCGS_TRY(adcgs_trainer_target(t, index, NULL, &taken, error));
     for (size_t i = 0; i < values; i++)
         t->grad[i] = taken[i] - t->image[i];
-    ADCGS_TRY(adcgs_view_draw_back(t, &v->view, index, &t->pass->grads, error));
+    ADCGS_TRY(adcgs_view_backward(t, &v->view, index, &t->pass->grads, error));
     float(*missing)[3] = m->missing + m->n * m->anchors;
     float *pixels = m->pixels + m->n * m->anchors;
     for (size_t i = 0; i < t->pass->primitives.n; i++) {
@@ -143,7 +143,7 @@ static int is_worth(const adcgs_trainer *t, float missing, float pixels)
 {
     const double area = (double)t->views[0].view.width * t->views[0].view.height;
     const double gain = WORTH * (double)missing * (double)missing * (double)pixels / area;
-    return missing > VISIBLE && gain > ANCHOR_BITS * adcgs_price_of_bit(t);
+    return missing > VISIBLE && gain > ANCHOR_BITS * adcgs_cost_of_bit(t);
 }
 
 /** Unfreezes static or moving anchors. *idle: nothing moves, and nothing has changed in any frame. */
@@ -153,9 +153,9 @@ static void choose(adcgs_trainer *t, const moments *m, int moving, int *idle)
     *idle = 1;
     for (uint32_t i = 0; i < f->n; i++) {
         const verdict v = judge(m, i, moving);
-        *idle &= f->moving[i] == 0 && f->learns[i] == 0 && !is_worth(t, v.most, v.pixels);
+        *idle &= f->moving[i] == 0 && f->trainable[i] == 0 && !is_worth(t, v.most, v.pixels);
         if ((f->moving[i] != 0) == moving && is_worth(t, v.median, v.pixels))
-            f->learns[i] = 1;
+            f->trainable[i] = 1;
     }
 }
 
@@ -189,14 +189,14 @@ static double moment_of(const adcgs_train_config *c, int time)
     return time == 0 ? 0 : from + (until - from) * (time - 1) / (TIMES - 1);
 }
 
-adcgs_status adcgs_release_step(adcgs_trainer *t, double progress, adcgs_error *error)
+adcgs_status adcgs_unfreeze_step(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     int idle = 0;
-    if (!t->f->follows || t->released >= TIMES || progress < moment_of(&t->config, t->released))
+    if (!t->f->follows || t->unfreeze_tests >= TIMES || progress < moment_of(&t->config, t->unfreeze_tests))
         return ADCGS_OK;
-    ADCGS_TRY(release(t, t->released > 0, &idle, error));
-    if (idle && t->released == 0) /* nothing to train: the run is finished */
+    ADCGS_TRY(release(t, t->unfreeze_tests > 0, &idle, error));
+    if (idle && t->unfreeze_tests == 0) /* nothing to train: the run is finished */
         t->iteration = t->config.iterations;
-    t->released++;
+    t->unfreeze_tests++;
     return ADCGS_OK;
 }

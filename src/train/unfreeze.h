@@ -9,6 +9,6 @@
 #include "train/state.h"
 
 /** Unfreezes anchors at fixed times of a run. If nothing needs training, the run ends: its iteration becomes the last. */
-adcgs_status adcgs_release_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
+adcgs_status adcgs_unfreeze_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
 
 #endif

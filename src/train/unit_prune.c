@@ -171,7 +171,7 @@ void adcgs_gram_clear(adcgs_gram *gram)
 
 /* ---- Removal of a unit ---- */
 
-void adcgs_mlp_silence(const adcgs_mlp *m, float *p, adcgs_gram *gram, int unit)
+void adcgs_mlp_prune_unit(const adcgs_mlp *m, float *p, adcgs_gram *gram, int unit)
 {
     const int n = gram->n;
     for (int l = 1; l <= m->hidden; l++) {
@@ -303,7 +303,7 @@ static adcgs_status slim_network(slimming *s, adcgs_error *error)
     while (s->left > step && since < patience) {
         for (int i = 0; i < step; i++, s->left--) {
             const int unit = least_present(m, &f->param[s->group], &s->gram, s->keep);
-            adcgs_mlp_silence(m, f->param[s->group].p, &s->gram, unit);
+            adcgs_mlp_prune_unit(m, f->param[s->group].p, &s->gram, unit);
             s->keep[unit] = 0;
         }
         ADCGS_TRY(judge(s, &better, error));

@@ -26,7 +26,7 @@ void adcgs_gram_clear(adcgs_gram *gram);
  * Zeroes the weights that read hidden unit `unit`, and changes the weights that read the others, and the biases. The layers' sums
  * stay as close as linear regression allows. gram is updated; a unit can be removed once.
  */
-void adcgs_mlp_silence(const adcgs_mlp *mlp, float *p, adcgs_gram *gram, int unit);
+void adcgs_mlp_prune_unit(const adcgs_mlp *mlp, float *p, adcgs_gram *gram, int unit);
 
 /** Removes the hidden units of a network with keep[unit] 0: parameters and Adam moments of the others are compacted. */
 void adcgs_fmodel_narrow(adcgs_fmodel *f, int group, const uint8_t *keep);

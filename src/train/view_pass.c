@@ -11,7 +11,7 @@ static const double EXPOSURE_FROM = 0.02;
 /* View passes ahead for which images are prefetched. */
 enum { PICTURES_AHEAD = 8 };
 
-int adcgs_look_is_rated(const adcgs_trainer *t, double progress)
+int adcgs_view_pass_has_rate(const adcgs_trainer *t, double progress)
 {
     return progress >= t->config.rate_start && !t->config.without_rate && !t->frozen;
 }
@@ -71,20 +71,20 @@ static void add_stats(const adcgs_trainer *t, const adcgs_view *v, const adcgs_r
 
 /** Renders the view, and computes the gradients of its image loss with respect to the primitives. */
 static adcgs_status look_at_picture(adcgs_trainer *t, double progress, uint32_t number, const adcgs_raster_grads *grads,
-                                    adcgs_seen *seen, adcgs_error *error)
+                                    adcgs_view_result *result, adcgs_error *error)
 {
     const uint32_t picked = adcgs_view_pick(t, number), n = t->config.batch;
     const adcgs_view *v = &t->views[picked].view;
     adcgs_raster_grads all = *grads;
     adcgs_loss_value value;
     const float *target;
-    ADCGS_TRY(adcgs_view_draw(t, v, picked, t->image, 1, error));
-    ADCGS_TRY(adcgs_trainer_target(t, picked, follows_exposure(t, progress) ? &seen->sums : NULL, &target, error));
-    adcgs_pictures_expect(t->pictures, adcgs_view_pick(t, number + (PICTURES_AHEAD + n - 1) / n * n));
+    ADCGS_TRY(adcgs_view_render(t, v, picked, t->image, 1, error));
+    ADCGS_TRY(adcgs_trainer_target(t, picked, follows_exposure(t, progress) ? &result->sums : NULL, &target, error));
+    adcgs_image_store_prefetch(t->pictures, adcgs_view_pick(t, number + (PICTURES_AHEAD + n - 1) / n * n));
     ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
-    seen->loss = value.loss;
-    seen->mse = value.mse;
-    return adcgs_view_draw_back(t, v, picked, &all, error);
+    result->loss = value.loss;
+    result->mse = value.mse;
+    return adcgs_view_backward(t, v, picked, &all, error);
 }
 
 /** Adds the penalties of primitives and of their motion. */
@@ -105,32 +105,32 @@ static adcgs_status add_prices(adcgs_trainer *t, double progress, uint32_t numbe
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_look(adcgs_trainer *t, double progress, uint32_t number, adcgs_train_stats *stats, adcgs_seen *seen,
-                        adcgs_error *error)
+adcgs_status adcgs_view_pass(adcgs_trainer *t, double progress, uint32_t number, adcgs_train_stats *stats,
+                             adcgs_view_result *result, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
     const uint32_t picked = adcgs_view_pick(t, number);
     const adcgs_train_view *v = &t->views[picked];
     const adcgs_pass_mode mode = mode_of(t, progress, number);
-    const int rated = adcgs_look_is_rated(t, progress);
+    const int rated = adcgs_view_pass_has_rate(t, progress);
     /* A rounding pass updates the means of the groups that it measures, so all passes of an iteration use the same groups. */
     const uint32_t turn = mode.quant == ADCGS_QUANT_ROUND ? t->iteration : number;
     adcgs_raster_grads grads = t->pass->grads;
     if (progress >= c->densify_until) /* only growth needs it */
         grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
-    ADCGS_TRY(look_at_picture(t, progress, number, &grads, seen, error));
+    ADCGS_TRY(look_at_picture(t, progress, number, &grads, result, error));
     add_stats(t, &v->view, &grads, stats);
     ADCGS_TRY(add_prices(t, progress, number, &v->view, mode.deform, &grads, error));
     adcgs_rate rate = { .total = 0 };
-    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)adcgs_price_of_bit(t) : 0, c->rate_period,
+    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)adcgs_cost_of_bit(t) : 0, c->rate_period,
                         (int)(turn % (uint32_t)c->rate_period), rated ? &rate : NULL);
-    memcpy(seen->bits, rate.bits, sizeof seen->bits);
-    return adcgs_tiers_learn(t, picked, &mode, error);
+    memcpy(result->bits, rate.bits, sizeof result->bits);
+    return adcgs_tiers_train(t, picked, &mode, error);
 }
 
-void adcgs_look_note(adcgs_trainer *t, double progress, uint32_t number, const adcgs_seen *seen)
+void adcgs_view_pass_apply(adcgs_trainer *t, double progress, uint32_t number, const adcgs_view_result *result)
 {
     if (follows_exposure(t, progress))
-        adcgs_exposure_follow(&t->exposure, adcgs_view_pick(t, number), &seen->sums);
+        adcgs_exposure_follow(&t->exposure, adcgs_view_pick(t, number), &result->sums);
 }

@@ -97,7 +97,7 @@ static adcgs_status add_cameras(still *s, uint32_t *cameras, adcgs_error *error)
     uint32_t *const of = adcgs_alloc(NULL, 2 * (size_t)n_views, sizeof *of, error), *const order = of + n_views, all, n;
     if (!of)
         return adcgs_alloc_status(error);
-    adcgs_status status = adcgs_sort_by_camera(s->scene->views[ADCGS_SPLIT_TRAIN], n_views, of, order, &all, error);
+    adcgs_status status = adcgs_group_views(s->scene->views[ADCGS_SPLIT_TRAIN], n_views, of, order, &all, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < n_views; i += n) {
         n = 1;
         while (i + n < n_views && of[order[i + n]] == of[order[i]])

@@ -20,7 +20,7 @@ static void check(adcgs_status status, const adcgs_error *error)
 }
 
 /** Resumes as adcgs-enc does: the last segment is held back. */
-static void go_on(adcgs_past *past)
+static void go_on(adcgs_resume_reader *past)
 {
     adcgs_encode_live live = { .max_anchors = 0 };
     adcgs_model model, last = { .n = 0 };
@@ -30,12 +30,12 @@ static void go_on(adcgs_past *past)
     while (status == ADCGS_OK) {
         adcgs_buffer bytes;
         adcgs_buffer_init(&bytes);
-        status = adcgs_past_next(past, &model, &error);
+        status = adcgs_resume_reader_next(past, &model, &error);
         check(status, &error);
         if (status != ADCGS_OK || !model.n)
             break;
         status = n++ ? adcgs_encode_live_add(&live, &last, &bytes, &error) :
-                       adcgs_encode_live_go_on(&live, &past->stream, ANCHORS, ADCGS_CPU_SCALAR, NULL, &error);
+                       adcgs_encode_live_continue(&live, &past->stream, ANCHORS, ADCGS_CPU_SCALAR, NULL, &error);
         check(status, &error);
         FUZZ_REQUIRE(status != ADCGS_ERR_INTERNAL); /* else it differs from the segment that was read */
         adcgs_model_clear(&last, NULL);
@@ -43,7 +43,7 @@ static void go_on(adcgs_past *past)
         last = model;
     }
     if (status == ADCGS_OK)
-        FUZZ_REQUIRE(adcgs_past_next(past, &model, &error) == ADCGS_OK && !model.n);
+        FUZZ_REQUIRE(adcgs_resume_reader_next(past, &model, &error) == ADCGS_OK && !model.n);
     adcgs_model_clear(&last, NULL);
     adcgs_encode_live_clear(&live);
 }
@@ -52,12 +52,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char path[] = "/tmp/adcgs-fuzz-XXXXXX";
     adcgs_error error = { ADCGS_OK, "" };
-    adcgs_past past;
+    adcgs_resume_reader past;
     const int file = mkstemp(path);
     FUZZ_REQUIRE(file >= 0 && write(file, data, size) == (ssize_t)size && close(file) == 0);
-    FUZZ_REQUIRE(adcgs_past_open(&past, path, ADCGS_CPU_SCALAR, NULL, &error) == ADCGS_OK);
+    FUZZ_REQUIRE(adcgs_resume_reader_open(&past, path, ADCGS_CPU_SCALAR, NULL, &error) == ADCGS_OK);
     go_on(&past);
-    adcgs_past_close(&past);
+    adcgs_resume_reader_close(&past);
     unlink(path);
     return 0;
 }

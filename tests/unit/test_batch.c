@@ -87,16 +87,16 @@ static void gradients_are_the_mean(void **state)
         const adcgs_param *p = &t->f->param[ADCGS_P_THETA], *q = &by_hand->f->param[ADCGS_P_THETA];
         float *g[4];
         double bits = 0;
-        assert_int_equal(adcgs_batch_look(t, progress, &error), ADCGS_OK);
+        assert_int_equal(adcgs_batch_run(t, progress, &error), ADCGS_OK);
         for (uint32_t i = 0; i < 4; i++) {
-            adcgs_seen seen;
+            adcgs_view_result seen;
             g[i] = calloc(q->n, sizeof **g);
-            assert_int_equal(adcgs_look(by_hand, progress, 4 * stops[s] + i, &by_hand->stats, &seen, &error), ADCGS_OK);
+            assert_int_equal(adcgs_view_pass(by_hand, progress, 4 * stops[s] + i, &by_hand->stats, &seen, &error), ADCGS_OK);
             memcpy(g[i], q->g, q->n * sizeof *q->g);
             for (int j = 0; j < ADCGS_P_COUNT; j++)
                 memset(by_hand->f->param[j].g, 0, by_hand->f->param[j].n * sizeof *q->g);
-            assert_true(seen.loss > 0 && seen.loss == t->batch.seen[i].loss && seen.mse == t->batch.seen[i].mse);
-            assert_true(seen.bits[ADCGS_GROUP_FV] == t->batch.seen[i].bits[ADCGS_GROUP_FV]);
+            assert_true(seen.loss > 0 && seen.loss == t->batch.results[i].loss && seen.mse == t->batch.results[i].mse);
+            assert_true(seen.bits[ADCGS_GROUP_FV] == t->batch.results[i].bits[ADCGS_GROUP_FV]);
             bits += seen.bits[ADCGS_GROUP_FV];
         }
         assert_true((bits > 0) == (s > 0));

@@ -185,20 +185,20 @@ static void test_labelled(void **state)
 static void test_sixteen(void **state)
 {
     static const char *const names[] = {"8.ppm", "16.ppm", "8.tif", "16.tif", "8.png", "16.png"};
-    adcgs_pictures *pictures;
+    adcgs_image_store *pictures;
     adcgs_pool *pool;
-    const adcgs_pictures_config config = {.split = ADCGS_SPLIT_TRAIN, .divide = 1};
+    const adcgs_image_store_config config = {.split = ADCGS_SPLIT_TRAIN, .divide = 1};
     for (size_t i = 0; i < ADCGS_COUNTOF(names); i++)
         put_levels(names[i], i % 2 ? 16 : 8, 3, i % 2 ? 65535 : 255);
     open_frames(FRAMES(FRAME("8.ppm") "," FRAME("8.ppm") "," FRAME("16.ppm") "," FRAME("8.tif") "," FRAME("16.tif") ","
                        FRAME("8.png") "," FRAME("16.png")));
     assert_int_equal(scene->n_views[ADCGS_SPLIT_TRAIN], ADCGS_COUNTOF(names));
     expect_good(adcgs_pool_create(&pool, 2, &error));
-    expect_good(adcgs_pictures_load(&pictures, scene, &config, pool, &error));
+    expect_good(adcgs_image_store_load(&pictures, scene, &config, pool, &error));
     for (uint32_t v = 0; v < ADCGS_COUNTOF(names); v++) {
         const uint32_t divisor = v % 2 ? 65535 : 255;
         float *rgb = load(v), kept[3 * PIXELS];
-        expect_good(adcgs_pictures_get(pictures, v, kept, &error));
+        expect_good(adcgs_image_store_get(pictures, v, kept, &error));
         for (uint32_t c = 0; c < 3; c++)
             for (uint32_t i = 0; i < PIXELS; i++) {
                 const double expected = (double)((3 * i + c) * 7919u % (divisor + 1)) / divisor;
@@ -207,7 +207,7 @@ static void test_sixteen(void **state)
             }
         free(rgb);
     }
-    adcgs_pictures_free(&pictures);
+    adcgs_image_store_free(&pictures);
     adcgs_pool_free(&pool);
 }
 

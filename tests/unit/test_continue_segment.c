@@ -90,7 +90,7 @@ static uint32_t settled(const adcgs_fmodel *f)
 {
     uint32_t n = 0;
     for (uint32_t i = 0; i < f->n; i++)
-        n += f->learns[i] == 0;
+        n += f->trainable[i] == 0;
     return n;
 }
 
@@ -129,7 +129,7 @@ static void what_is_settled_is_kept(void **state)
     adcgs_trainer *t = make(&config, &before, pool);
     const uint32_t first = settled(t->f);
     assert_true(first > 0 && first <= before.n);
-    t->released = UINT8_MAX; /* a run this short leaves large errors, and would unfreeze everything */
+    t->unfreeze_tests = UINT8_MAX; /* a run this short leaves large errors, and would unfreeze everything */
     run(t, NULL, NULL);
     take_model(&model, t->f);
     assert_true(adcgs_kept_possible(&before, &model, &error));
@@ -197,11 +197,11 @@ static void what_has_changed_learns(void **state)
     adcgs_trainer *t = make(&config, &before, NULL);
     assert_int_equal(settled(t->f), before.n);
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
-    assert_int_equal(adcgs_release_step(t, 0, &error), ADCGS_OK);
+    assert_int_equal(adcgs_unfreeze_step(t, 0, &error), ADCGS_OK);
     assert_in_range(settled(t->f), 0, before.n * 6 / 10);
-    assert_int_equal(t->released, 1);
+    assert_int_equal(t->unfreeze_tests, 1);
     const uint32_t left = settled(t->f);
-    assert_int_equal(adcgs_release_step(t, 0, &error), ADCGS_OK); /* the check does not run again at once */
+    assert_int_equal(adcgs_unfreeze_step(t, 0, &error), ADCGS_OK); /* the check does not run again at once */
     assert_int_equal(settled(t->f), left);
     adcgs_trainer_free(&t);
     adcgs_model_clear(&before, NULL);
@@ -293,7 +293,7 @@ static void bodies_are_found_again(void **state)
         }
     }
 
-    assert_int_equal(adcgs_follow_bodies(f, &found, &error), ADCGS_OK);
+    assert_int_equal(adcgs_continue_bodies(f, &found, &error), ADCGS_OK);
     assert_int_equal(found.n_bodies, 4);
     assert_int_equal(found.moving[0].body, 1);
     assert_int_equal(found.moving[1].body, 2);

@@ -23,7 +23,7 @@ static adcgs_error error;
 static struct {
     uint32_t n;
     adcgs_scene_view views[MOST];
-    adcgs_glance glances[MOST];
+    adcgs_thumbnail thumbnails[MOST];
     char names[MOST][8];
 } film;
 
@@ -36,20 +36,20 @@ static double draw(void)
 }
 
 /* An image by a camera, in shades of its own (0.3 to 0.6, made brighter by the last argument) and plain tints. */
-static adcgs_glance *take(int camera, double time, double brighter)
+static adcgs_thumbnail *take(int camera, double time, double brighter)
 {
     adcgs_scene_view *const view = &film.views[film.n];
-    adcgs_glance *const glance = &film.glances[film.n];
+    adcgs_thumbnail *const thumbnail = &film.thumbnails[film.n];
     assert_true(film.n < MOST);
     snprintf(film.names[film.n], sizeof film.names[0], "%u", film.n);
     *view = (adcgs_scene_view){.camera = {.width = 64, .height = 64, .fx = 50.0 + camera}, .time = time,
                                .path = film.names[film.n]};
-    for (int i = 0; i < ADCGS_GLANCE_CELLS; i++)
-        glance->cells[i] = (float)(0.3 + 0.3 * ((i * (camera + 7) * 37) % 101) / 101.0 + brighter);
-    for (int i = 0; i < ADCGS_GLANCE_TINTS; i++)
-        glance->tints[0][i] = glance->tints[1][i] = 0.01f * (float)(i % 10);
+    for (int i = 0; i < ADCGS_THUMBNAIL_CELLS; i++)
+        thumbnail->cells[i] = (float)(0.3 + 0.3 * ((i * (camera + 7) * 37) % 101) / 101.0 + brighter);
+    for (int i = 0; i < ADCGS_THUMBNAIL_TINTS; i++)
+        thumbnail->tints[0][i] = thumbnail->tints[1][i] = 0.01f * (float)(i % 10);
     film.n++;
-    return glance;
+    return thumbnail;
 }
 
 static void begin(void)
@@ -60,20 +60,20 @@ static void begin(void)
 static adcgs_fault find(char which)
 {
     adcgs_fault fault = {.cameras = 99};
-    adcgs_tracks tracks;
+    adcgs_camera_order tracks;
     adcgs_status status = ADCGS_OK;
     adcgs_scene scene = {.directory = "here", .views = {film.views}, .n_views = {film.n}};
-    assert_int_equal(adcgs_tracks_find(&tracks, film.views, film.n, &error), ADCGS_OK);
+    assert_int_equal(adcgs_camera_order_find(&tracks, film.views, film.n, &error), ADCGS_OK);
     switch (which) {
     case 'g': status = adcgs_fault_gaps(&fault, &scene, &error); break;
-    case 'd': adcgs_fault_doubled(&fault, NULL, film.views, &tracks, film.glances); break;
-    case 'x': status = adcgs_fault_copied(&fault, film.views, &tracks, film.glances, &error); break;
-    case 'l': status = adcgs_fault_light(&fault, NULL, film.views, &tracks, film.glances, &error); break;
-    default: status = adcgs_fault_clocks(&fault, film.views, &tracks, film.glances, &error); break;
+    case 'd': adcgs_fault_duplicates(&fault, NULL, film.views, &tracks, film.thumbnails); break;
+    case 'x': status = adcgs_fault_copied(&fault, film.views, &tracks, film.thumbnails, &error); break;
+    case 'l': status = adcgs_fault_light(&fault, NULL, film.views, &tracks, film.thumbnails, &error); break;
+    default: status = adcgs_fault_clocks(&fault, film.views, &tracks, film.thumbnails, &error); break;
     }
     assert_int_equal(status, ADCGS_OK);
     assert_true(fault.cameras <= fault.of && isfinite(fault.from) && isfinite(fault.to) && isfinite(fault.size));
-    adcgs_tracks_clear(&tracks);
+    adcgs_camera_order_clear(&tracks);
     return fault;
 }
 
@@ -123,17 +123,17 @@ static void what_is_not_known_says_nothing(void **state)
     (void)state;
     begin();
     for (int i = 0; i < MOST; i++) {
-        adcgs_glance *const glance = take(i % CAMERAS, i / CAMERAS, draw() * 0.1);
-        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
+        adcgs_thumbnail *const thumbnail = take(i % CAMERAS, i / CAMERAS, draw() * 0.1);
+        for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
             if (i % 3 == 0 || k >= 31)
-                glance->cells[k] = NAN;
-        for (int k = 0; k < ADCGS_GLANCE_TINTS; k++)
+                thumbnail->cells[k] = NAN;
+        for (int k = 0; k < ADCGS_THUMBNAIL_TINTS; k++)
             if (i % 3 == 0 || k >= 31)
-                glance->tints[0][k] = glance->tints[1][k] = NAN;
+                thumbnail->tints[0][k] = thumbnail->tints[1][k] = NAN;
     }
     expect_silence(all);
     for (int i = 0; i < MOST; i++) /* no valid number at all */
-        memset(&film.glances[i], 0xff, sizeof film.glances[i]);
+        memset(&film.thumbnails[i], 0xff, sizeof film.thumbnails[i]);
     expect_silence(all);
 }
 
@@ -253,17 +253,17 @@ static void doubled_pictures_are_of_the_time_before(void **state)
     adcgs_trainer trainer = {.scene = &scene, .n_views = 24, .views = views, .config.retime_duplicates = 1};
     for (int pictures = 1; pictures <= 3; pictures++) {
         film_twice(pictures, 0.0, 2);
-        assert_int_equal(adcgs_doubled_find(&trainer, film.glances, &error), ADCGS_OK);
+        assert_int_equal(adcgs_retime_duplicates(&trainer, film.thumbnails, &error), ADCGS_OK);
         for (int i = 0; i < 24; i++) {
             const int copies = pictures > 1 && i / 8 < pictures && (i % 8 == 4 || i % 8 == 5) ? i % 8 - 3 : 0;
             assert_true(views[i].t == (float)((i - copies) / 24.0));
         }
-        assert_int_equal(trainer.doubled.count, pictures > 1 ? 2 * pictures : 0);
+        assert_int_equal(trainer.duplicates.count, pictures > 1 ? 2 * pictures : 0);
     }
     trainer.config.retime_duplicates = 0;
     views[4].t = -1.0f;
-    assert_int_equal(adcgs_doubled_find(&trainer, film.glances, &error), ADCGS_OK);
-    assert_true(trainer.doubled.count == 6 && views[4].t < 0.0f);
+    assert_int_equal(adcgs_retime_duplicates(&trainer, film.thumbnails, &error), ADCGS_OK);
+    assert_true(trainer.duplicates.count == 6 && views[4].t < 0.0f);
 }
 
 /* A movement to and fro may rest where it turns. */
@@ -316,9 +316,9 @@ static void pictures_of_others_are_found(void **state)
     (void)state;
     film_in_turn(-1, 0.0, 4);
     expect_silence(all);
-    const double usual = adcgs_glance_difference(&film.glances[21], &film.glances[17]), /* copy against its camera's others */
-        other = fmin(adcgs_glance_difference(&film.glances[20], &film.glances[17]),
-                     adcgs_glance_difference(&film.glances[20], &film.glances[25]));
+    const double usual = adcgs_thumbnail_difference(&film.thumbnails[21], &film.thumbnails[17]), /* against others */
+        other = fmin(adcgs_thumbnail_difference(&film.thumbnails[20], &film.thumbnails[17]),
+                     adcgs_thumbnail_difference(&film.thumbnails[20], &film.thumbnails[25]));
     assert_true(usual < 0.1 * other);
     film_in_turn(21, 0.0, 4);
     adcgs_fault fault = find('x');
@@ -342,14 +342,14 @@ static void what_all_see_is_no_copy(void **state)
     for (int i = 0; i < MOMENTS; i++) {
         take(0, i, 0.0);
         film.views[i].camera.fx = 50.0 + i % 2;
-        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
-            film.glances[i].cells[k] = (float)(0.3 + 0.2 * sin(k * (i / 2 + 1)));
+        for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
+            film.thumbnails[i].cells[k] = (float)(0.3 + 0.2 * sin(k * (i / 2 + 1)));
     }
     expect_silence("x");
     film_in_turn(-1, 0.0, 4);
     for (int i = 20; i < 24; i++)
-        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
-            film.glances[i].cells[k] = 0.001f * (float)(k % 2);
+        for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
+            film.thumbnails[i].cells[k] = 0.001f * (float)(k % 2);
     expect_silence("x");
 }
 
@@ -359,18 +359,18 @@ static void what_all_see_is_no_copy(void **state)
  * Cameras that each see all frames. From frame `at` until `until` the images are brighter by exp(size), or have another tint, in
  * all cells. In `off` per cent of the cells the change is twice as large. cameras: how many of three change.
  */
-static void film_light(adcgs_glance_light light, double size, int at, int until, int off, int cameras)
+static void film_light(adcgs_thumbnail_light light, double size, int at, int until, int off, int cameras)
 {
     begin();
     for (int i = 0; i < 3 * 16; i++) {
-        adcgs_glance *const glance = take(i % 3, i / 3, 0.0);
+        adcgs_thumbnail *const thumbnail = take(i % 3, i / 3, 0.0);
         if (i % 3 >= cameras || i / 3 < at || i / 3 >= until)
             continue;
-        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
+        for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
             if (light == ADCGS_LIGHT_BRIGHTER)
-                glance->cells[k] *= (float)exp(k % 100 < off ? 2.0 * size : size);
-        for (int k = 0; k < ADCGS_GLANCE_TINTS && light > ADCGS_LIGHT_BRIGHTER; k++)
-            glance->tints[light - ADCGS_LIGHT_REDDER][k] += (float)(k % 100 < off ? 2.0 * size : size);
+                thumbnail->cells[k] *= (float)exp(k % 100 < off ? 2.0 * size : size);
+        for (int k = 0; k < ADCGS_THUMBNAIL_TINTS && light > ADCGS_LIGHT_BRIGHTER; k++)
+            thumbnail->tints[light - ADCGS_LIGHT_REDDER][k] += (float)(k % 100 < off ? 2.0 * size : size);
     }
 }
 
@@ -379,19 +379,19 @@ static void steps_of_light_are_found(void **state)
     (void)state;
     for (int light = 0; light < ADCGS_LIGHTS; light++)
         for (int sign = -1; sign <= 1; sign += 2) {
-            film_light((adcgs_glance_light)light, sign * 0.0767, 8, 99, 0, 3);
+            film_light((adcgs_thumbnail_light)light, sign * 0.0767, 8, 99, 0, 3);
             expect_silence("l");
             for (int cameras = 1; cameras <= 3; cameras++) {
-                film_light((adcgs_glance_light)light, sign * 0.0773, 8, 99, 0, cameras);
+                film_light((adcgs_thumbnail_light)light, sign * 0.0773, 8, 99, 0, cameras);
                 const adcgs_fault fault = find('l');
                 assert_true((int)fault.cameras == cameras && fault.of == 3 && fault.count == 1 && (int)fault.light == light);
                 assert_true(fault.from == 7.0 && fault.to == 8.0 && fabs(log(fault.size) - sign * 0.0773) < 1e-5);
             }
-            film_light((adcgs_glance_light)light, sign * 0.2, 8, 9, 0, 3); /* a flash */
+            film_light((adcgs_thumbnail_light)light, sign * 0.2, 8, 9, 0, 3); /* a flash */
             assert_int_equal(find('l').cameras, 3);
-            film_light((adcgs_glance_light)light, sign * 0.2, 8, 99, 49, 3); /* in nearly half of the cells the step is larger */
+            film_light((adcgs_thumbnail_light)light, sign * 0.2, 8, 99, 49, 3); /* nearly half of the cells: larger */
             assert_int_equal(find('l').cameras, 3);
-            film_light((adcgs_glance_light)light, sign * 0.2, 1, 99, 0, 3); /* steps at the ends are not reported */
+            film_light((adcgs_thumbnail_light)light, sign * 0.2, 1, 99, 0, 3); /* steps at the ends are not reported */
             expect_silence("l");
         }
 }
@@ -403,8 +403,8 @@ static void what_moves_is_no_light(void **state)
     for (int spread = 0; spread < 2; spread++) {
         film_light(ADCGS_LIGHT_BRIGHTER, 0.2, 8, 99, 0, 3);
         for (uint32_t i = 24; i < film.n; i++)
-            for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
-                film.glances[i].cells[k] *= (float)exp((k % 10 < 4 ? 0.0 : k % 2 ? 0.2 : -0.2) * (spread ? 0.35 : 0.32));
+            for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
+                film.thumbnails[i].cells[k] *= (float)exp((k % 10 < 4 ? 0.0 : k % 2 ? 0.2 : -0.2) * (spread ? 0.35 : 0.32));
         assert_int_equal(find('l').cameras, spread ? 0 : 3);
     }
 }
@@ -416,8 +416,8 @@ static void light_that_changes_all_the_time(void **state)
     for (int much = 0; much < 2; much++) {
         film_light(ADCGS_LIGHT_BRIGHTER, 0.2, 8, 99, 0, 3);
         for (uint32_t i = 0; i < film.n; i++)
-            for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
-                film.glances[i].cells[k] *= (float)exp((much ? 0.11 : 0.09) * (film.views[i].time - 8.0));
+            for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
+                film.thumbnails[i].cells[k] *= (float)exp((much ? 0.11 : 0.09) * (film.views[i].time - 8.0));
         assert_int_equal(find('l').cameras, much ? 0 : 3);
     }
 }
@@ -428,8 +428,8 @@ static void the_greatest_step_is_told(void **state)
     (void)state;
     film_light(ADCGS_LIGHT_REDDER, 0.3, 8, 99, 0, 3);
     for (uint32_t i = 24; i < film.n; i++)
-        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
-            film.glances[i].cells[k] *= (float)exp(0.1);
+        for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
+            film.thumbnails[i].cells[k] *= (float)exp(0.1);
     assert_true(find('l').light == ADCGS_LIGHT_REDDER && find('l').cameras == 3);
 }
 
@@ -439,13 +439,13 @@ static void even(void)
 {
     uint8_t behind[MOST] = {0};
     adcgs_fault fault;
-    adcgs_tracks tracks;
-    assert_int_equal(adcgs_tracks_find(&tracks, film.views, film.n, &error), ADCGS_OK);
+    adcgs_camera_order tracks;
+    assert_int_equal(adcgs_camera_order_find(&tracks, film.views, film.n, &error), ADCGS_OK);
     for (uint32_t i = 0; i < film.n; i++) /* values from before, to be overwritten */
         film.views[i].stops[i % 3] = 7.0f;
-    assert_int_equal(adcgs_fault_light(&fault, behind, film.views, &tracks, film.glances, &error), ADCGS_OK);
-    adcgs_light_add_up(film.views, behind, &tracks, film.glances);
-    adcgs_tracks_clear(&tracks);
+    assert_int_equal(adcgs_fault_light(&fault, behind, film.views, &tracks, film.thumbnails, &error), ADCGS_OK);
+    adcgs_light_add_up(film.views, behind, &tracks, film.thumbnails);
+    adcgs_camera_order_clear(&tracks);
 }
 
 /* Expects the correction of film_light(): in `cameras` cameras from `at` on; gains: the logarithms per channel. */
@@ -476,13 +476,13 @@ static void steps_of_light_are_evened(void **state)
         for (int i = 0; i < 3 * 16; i++)
             assert_true(fabs((double)film.views[i].stops[1] * log(2.0) - (i / 3 == 8 ? size : 0.0)) < 1e-4);
         for (int light = ADCGS_LIGHT_REDDER; light <= ADCGS_LIGHT_BLUER; light++) {
-            film_light((adcgs_glance_light)light, size, 8, 99, 0, 3);
+            film_light((adcgs_thumbnail_light)light, size, 8, 99, 0, 3);
             for (uint32_t i = 0; i < film.n; i++) /* of one tint, so that the gains are known */
-                for (int k = 0; k < ADCGS_GLANCE_TINTS; k++)
-                    film.glances[i].tints[0][k] = film.glances[i].tints[1][k] = 0.0f;
+                for (int k = 0; k < ADCGS_THUMBNAIL_TINTS; k++)
+                    film.thumbnails[i].tints[0][k] = film.thumbnails[i].tints[1][k] = 0.0f;
             for (uint32_t i = 24; i < film.n; i++)
-                for (int k = 0; k < ADCGS_GLANCE_TINTS; k++)
-                    film.glances[i].tints[light - ADCGS_LIGHT_REDDER][k] = (float)size;
+                for (int k = 0; k < ADCGS_THUMBNAIL_TINTS; k++)
+                    film.thumbnails[i].tints[light - ADCGS_LIGHT_REDDER][k] = (float)size;
             const double green = log(3.0 / (2.0 + exp(size)));
             double gains[3] = {green, green, green};
             gains[light == ADCGS_LIGHT_REDDER ? 0 : 2] += size;
@@ -497,15 +497,15 @@ static void what_is_evened_adds_up(void **state)
     (void)state;
     film_light(ADCGS_LIGHT_BRIGHTER, 0.3, 4, 99, 0, 3);
     for (uint32_t i = 36; i < film.n; i++)
-        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
-            film.glances[i].cells[k] *= (float)exp(-0.5);
+        for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
+            film.thumbnails[i].cells[k] *= (float)exp(-0.5);
     even();
     for (int i = 0; i < 3 * 16; i++)
         assert_true(fabs((double)film.views[i].stops[0] * log(2.0) - (i / 3 < 4 ? 0.0 : i / 3 < 12 ? 0.3 : -0.2)) < 1e-4);
     film_light(ADCGS_LIGHT_BRIGHTER, 0.3, 8, 99, 0, 3);
     for (uint32_t i = 0; i < film.n; i++)
-        for (int k = 0; k < ADCGS_GLANCE_TINTS; k++)
-            film.glances[i].tints[0][k] = NAN;
+        for (int k = 0; k < ADCGS_THUMBNAIL_TINTS; k++)
+            film.thumbnails[i].tints[0][k] = NAN;
     expect_even(8, (const double[3]){0.0, 0.0, 0.0}, 3);
 }
 
@@ -590,22 +590,22 @@ static void film_anything(uint32_t seed, int cameras, int turns, int moves)
     for (int i = 0; i < MOMENTS; i++)
         for (int k = 0; k < cameras / turns; k++) {
             const int c = (i + k * turns) % cameras;
-            adcgs_glance *const glance = take(moves ? 0 : c, i, 0.0);
+            adcgs_thumbnail *const thumbnail = take(moves ? 0 : c, i, 0.0);
             film.views[film.n - 1].camera.fx = 50.0 + (moves ? 0.01 * i : c);
             for (int b = 0; b < 4; b++) {
                 const double t = (double)i / MOMENTS, *w = way[b];
                 const double x = 16 + 12 * sin(6.2832 * (w[0] + 3 * w[1] * t)) + 2 * c + (moves ? 0.2 * i : 0);
                 const double y = 16 + 12 * sin(6.2832 * (w[2] + 3 * w[3] * t)), r = 2 + 4 * w[4];
-                for (int p = 0; p < ADCGS_GLANCE_CELLS; p++) {
-                    const double dx = p % ADCGS_GLANCE_SIDE - x, dy = p / ADCGS_GLANCE_SIDE - y;
+                for (int p = 0; p < ADCGS_THUMBNAIL_CELLS; p++) {
+                    const double dx = p % ADCGS_THUMBNAIL_SIDE - x, dy = p / ADCGS_THUMBNAIL_SIDE - y;
                     const double share = 1.0 / (1.0 + exp(2.0 * (sqrt(dx * dx + dy * dy) - r)));
-                    glance->cells[p] += (float)(share * (w[5] - 0.5));
-                    glance->tints[0][p % ADCGS_GLANCE_TINTS] += (float)(share * (w[6] - 0.5));
-                    glance->tints[1][p % ADCGS_GLANCE_TINTS] += (float)(share * (w[7] - 0.5));
+                    thumbnail->cells[p] += (float)(share * (w[5] - 0.5));
+                    thumbnail->tints[0][p % ADCGS_THUMBNAIL_TINTS] += (float)(share * (w[6] - 0.5));
+                    thumbnail->tints[1][p % ADCGS_THUMBNAIL_TINTS] += (float)(share * (w[7] - 0.5));
                 }
             }
-            for (int p = 0; p < ADCGS_GLANCE_CELLS; p++)
-                glance->cells[p] += (float)(0.002 * (draw() - 0.5));
+            for (int p = 0; p < ADCGS_THUMBNAIL_CELLS; p++)
+                thumbnail->cells[p] += (float)(0.002 * (draw() - 0.5));
         }
 }
 
@@ -628,7 +628,7 @@ static void what_is_masked_does_not_count(void **state)
 {
     enum { SIDE = 64, PLANE = SIDE * SIDE };
     static float rgb[2][3 * PLANE];
-    adcgs_glance glances[2];
+    adcgs_thumbnail thumbnails[2];
     double spread;
     (void)state;
     for (int masked = 0; masked < 2; masked++)
@@ -639,13 +639,13 @@ static void what_is_masked_does_not_count(void **state)
                     const double shade = 0.2 + 0.1 * (i % 7) / 7.0, gain = p ? sign ? 2.0 : 1.0 + 0.25 * brighter : 1.0;
                     rgb[p][i] = sign && masked ? NAN : (float)(shade * gain);
                 }
-                adcgs_glance_take(&glances[p], rgb[p], SIDE, SIDE);
+                adcgs_thumbnail_compute(&thumbnails[p], rgb[p], SIDE, SIDE);
             }
-            const double step = exp(adcgs_glance_compare(&glances[0], &glances[1], ADCGS_LIGHT_BRIGHTER, &spread));
+            const double step = exp(adcgs_thumbnail_compare(&thumbnails[0], &thumbnails[1], ADCGS_LIGHT_BRIGHTER, &spread));
             const double expected = !masked ? 2.0 : 1.0 + 0.25 * brighter;
             assert_true(fabs(step - expected) < 1e-3 && (!masked || spread < 1e-3));
             if (masked && !brighter)
-                assert_true(adcgs_glance_difference(&glances[0], &glances[1]) < 1e-6);
+                assert_true(adcgs_thumbnail_difference(&thumbnails[0], &thumbnails[1]) < 1e-6);
         }
 }
 

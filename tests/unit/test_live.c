@@ -371,7 +371,7 @@ static void test_settle(void **state)
     grow(&s, &bytes, &head, ends);
     FILE *from = tmpfile(), *to = tmpfile();
     assert_true(from && to && fwrite(bytes.data, 1, bytes.size, from) == bytes.size && !fseek(from, 0, SEEK_SET));
-    assert_int_equal(adcgs_encode_settle(to, from, head.data, head.size, "x", &error), ADCGS_OK);
+    assert_int_equal(adcgs_encode_replace_head(to, from, head.data, head.size, "x", &error), ADCGS_OK);
     assert_int_equal(ftell(to), bytes.size);
     rewind(to);
     assert_int_equal(adcgs_open_stream(&d, adcgs_file_read, to, NULL, &error), ADCGS_OK);
@@ -388,11 +388,11 @@ static void test_settle(void **state)
     for (size_t cut = 0; cut < bytes.size; cut += 97) { /* a stream that ends early cannot be settled */
         FILE *part = tmpfile();
         assert_true(part && fwrite(bytes.data, 1, cut, part) == cut && !fseek(part, 0, SEEK_SET));
-        assert_int_equal(adcgs_encode_settle(to, part, head.data, head.size, "x", &error), ADCGS_ERR_DATA);
+        assert_int_equal(adcgs_encode_replace_head(to, part, head.data, head.size, "x", &error), ADCGS_ERR_DATA);
         fclose(part);
     }
     rewind(from);
-    assert_int_equal(adcgs_encode_settle(to, from, head.data, head.size - 1, "x", &error), ADCGS_ERR_DATA);
+    assert_int_equal(adcgs_encode_replace_head(to, from, head.data, head.size - 1, "x", &error), ADCGS_ERR_DATA);
     fclose(from);
     fclose(to);
     adcgs_stream_clear(&s, NULL);
@@ -404,15 +404,15 @@ static void test_settle(void **state)
 static void expect_past(const adcgs_stream *s, const uint8_t *data, size_t n, size_t right, const size_t *ends)
 {
     const char *path = in_folder("past", 0, 0);
-    adcgs_past past;
+    adcgs_resume_reader past;
     adcgs_model model;
     uint32_t found = 0, whole = 0;
     assert_int_equal(adcgs_atomic_save(path, data, n, &error), ADCGS_OK);
-    assert_int_equal(adcgs_past_open(&past, path, ADCGS_CPU_SCALAR, NULL, &error), ADCGS_OK);
+    assert_int_equal(adcgs_resume_reader_open(&past, path, ADCGS_CPU_SCALAR, NULL, &error), ADCGS_OK);
     while (whole < SEGMENTS && ends[whole] <= right)
         whole++;
     for (;; found++) {
-        assert_int_equal(adcgs_past_next(&past, &model, &error), ADCGS_OK);
+        assert_int_equal(adcgs_resume_reader_next(&past, &model, &error), ADCGS_OK);
         if (!model.n)
             break;
         assert_true(found < SEGMENTS && adcgs_model_equal(&s->segments[found], &model, &error));
@@ -421,9 +421,9 @@ static void expect_past(const adcgs_stream *s, const uint8_t *data, size_t n, si
     }
     assert_true(found >= whole && found <= whole + 1); /* a segment is whole even if the digest behind it is not */
     assert_int_equal(past.fault.status != ADCGS_OK, right < n);
-    assert_int_equal(adcgs_past_next(&past, &model, &error), ADCGS_OK);
+    assert_int_equal(adcgs_resume_reader_next(&past, &model, &error), ADCGS_OK);
     assert_int_equal(model.n, 0);
-    adcgs_past_close(&past);
+    adcgs_resume_reader_close(&past);
     unlink(path);
 }
 
@@ -432,7 +432,7 @@ static void test_past(void **state)
 {
     adcgs_stream s;
     adcgs_buffer bytes, head;
-    adcgs_past past;
+    adcgs_resume_reader past;
     size_t ends[SEGMENTS];
     (void)state;
     adcgs_buffer_init(&bytes);
@@ -449,8 +449,8 @@ static void test_past(void **state)
         expect_past(&s, bytes.data, bytes.size, n, ends);
         bytes.data[n] ^= 0x55;
     }
-    assert_int_equal(adcgs_past_open(&past, "/nowhere/x", ADCGS_CPU_SCALAR, NULL, &error), ADCGS_ERR_IO);
-    adcgs_past_close(&past);
+    assert_int_equal(adcgs_resume_reader_open(&past, "/nowhere/x", ADCGS_CPU_SCALAR, NULL, &error), ADCGS_ERR_IO);
+    adcgs_resume_reader_close(&past);
     adcgs_stream_clear(&s, NULL);
     adcgs_buffer_clear(&bytes);
     adcgs_buffer_clear(&head);

@@ -133,15 +133,15 @@ static void units_go_twice(void **state)
     config.lambda = 0.02f;
     adcgs_trainer *t = run_to(&config, 1040);
     const size_t before = weights_of(t->f);
-    assert_int_equal(t->slimmed, 0);
+    assert_int_equal(t->units_pruned, 0);
     go_on(t, 1100);
     const size_t once = weights_of(t->f);
-    assert_int_equal(t->slimmed, 1);
+    assert_int_equal(t->units_pruned, 1);
     t->lambda = 100;
     go_on(t, 1250);
     const size_t twice = weights_of(t->f);
     print_message("%zu weights; %zu after the first pruning, %zu after the second\n", before, once, twice);
-    assert_int_equal(t->slimmed, 2);
+    assert_int_equal(t->units_pruned, 2);
     assert_true(once < before && twice < once);
     adcgs_trainer_free(&t);
 }
@@ -430,8 +430,8 @@ static void silent_units_are_replaced(void **state)
         }
         outputs(t, before, &bits);
         assert_int_equal(adcgs_gram_take(&gram, t->f, i, &error), ADCGS_OK);
-        adcgs_mlp_silence(m, p, &gram, 3);
-        adcgs_mlp_silence(m, p, &gram, 7);
+        adcgs_mlp_prune_unit(m, p, &gram, 3);
+        adcgs_mlp_prune_unit(m, p, &gram, 7);
         adcgs_gram_clear(&gram);
         for (int l = 1; l <= m->hidden; l++)
             for (int o = 0; o < m->n_out[l]; o++)

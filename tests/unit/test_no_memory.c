@@ -68,13 +68,13 @@ static adcgs_train_config short_config(void)
 static adcgs_status try_scene(void)
 {
     const adcgs_scene_options options = { .points_path = NULL };
-    const adcgs_pictures_config pictures_config = { .split = ADCGS_SPLIT_TRAIN, .divide = 2 };
+    const adcgs_image_store_config pictures_config = { .split = ADCGS_SPLIT_TRAIN, .divide = 2 };
     adcgs_scene *own = NULL;
-    adcgs_pictures *pictures = NULL;
+    adcgs_image_store *pictures = NULL;
     adcgs_status status = adcgs_scene_open(&own, folder, &options, &error);
     if (status == ADCGS_OK)
-        status = adcgs_pictures_load(&pictures, own, &pictures_config, NULL, &error);
-    adcgs_pictures_free(&pictures);
+        status = adcgs_image_store_load(&pictures, own, &pictures_config, NULL, &error);
+    adcgs_image_store_free(&pictures);
     adcgs_scene_free(&own);
     return status;
 }
@@ -102,7 +102,7 @@ static adcgs_status run_stages(adcgs_trainer *t)
     const uint32_t half = 16;
     int stopped;
     ADCGS_TRY(adcgs_trainer_run(t, stop_at, (void *)(uintptr_t)&half, &stopped, &error));
-    ADCGS_TRY(adcgs_weigh_motion(t, &error));
+    ADCGS_TRY(adcgs_test_motion_gain(t, &error));
     ADCGS_TRY(adcgs_prune_units(t, &error));
     return adcgs_trainer_run(t, NULL, NULL, &stopped, &error);
 }
@@ -192,7 +192,7 @@ static void looks(void **state)
     t->rounding = 1;
     do {
         atomic_store(&left, tries++);
-        status = adcgs_batch_look(t, 0.9, &error);
+        status = adcgs_batch_run(t, 0.9, &error);
         atomic_store(&left, -1);
         assert_true(status == ADCGS_OK || status == ADCGS_ERR_MEMORY);
     } while (status != ADCGS_OK);

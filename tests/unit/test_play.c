@@ -401,10 +401,10 @@ static void test_keys(void **state)
     key(&play, 'r');
     assert_true(play.jumped == -1 && play.control.camera.cam_to_world[3] == 1.0);
     key(&play, 'p');
-    assert_int_equal(play.shot, ADCGS_SHOT_PNG);
+    assert_int_equal(play.shot, ADCGS_SOURCE_IMAGE_PNG);
     adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = ADCGS_KEY_SHIFT, .down = 1});
     key(&play, 'p');
-    assert_int_equal(play.shot, ADCGS_SHOT_EXR);
+    assert_int_equal(play.shot, ADCGS_SOURCE_IMAGE_EXR);
     key(&play, 'k'); /* with shift, still */
     assert_int_equal(play.key_frame, -1);
     adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = ADCGS_KEY_SHIFT, .down = 0});

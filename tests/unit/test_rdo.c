@@ -108,7 +108,7 @@ static void explain_pictures(adcgs_trainer *t)
                                               &error), ADCGS_OK);
         for (size_t j = 0; j < n; j++)
             t->taken[j] = t->image[j] + (float)(0.03 * adcgs_random_normal(9, i, j));
-        assert_int_equal(adcgs_pictures_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
     }
 }
 

@@ -102,7 +102,7 @@ static void contrast_is_of_what_is_known(void **state)
             for (size_t j = 0; j < plane; j++)
                 for (size_t c = 0; c < 3; c++)
                     t->taken[c * plane + j] = !known || (known == 2 && j % 2) ? (float)NAN : (float)(j / 2 % 2);
-            assert_int_equal(adcgs_pictures_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+            assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
         }
         assert_int_equal(adcgs_contrast(t, &contrast, &error), ADCGS_OK);
         assert_float_equal(contrast, known ? 0.5 : 0, 1e-9);
@@ -134,7 +134,7 @@ static void a_run_ends_wherever_it_stands(void **state)
         assert_int_equal(adcgs_trainer_restore(other, bytes.data, bytes.size, &error), ADCGS_OK);
         if (adcgs_trainer_finish(other, &report, &error) != ADCGS_OK)
             fail_msg("at %u: %s", t->iteration, error.text);
-        assert_true(other->frozen && other->rounding && other->decided && other->divide == 1);
+        assert_true(other->frozen && other->rounding && other->pruned && other->divide == 1);
         assert_int_equal(report.iteration, t->iteration);
         bytes.size = 0;
         assert_int_equal(adcgs_encode_stream(&stream, other, NULL, 0, &error), ADCGS_OK);
@@ -170,7 +170,7 @@ static int spoil(adcgs_trainer *t, int way)
     case 11: f->mlp[ADCGS_P_THETA].weight_step[0] = -1; break;
     case 12: t->lr_scale = INFINITY; break;
     case 13: t->lambda = NAN; break;
-    case 14: t->slimmed = 3; break;
+    case 14: t->units_pruned = 3; break;
     case 15: t->frozen = 1; break;
     case 16: t->elapsed.clock = -1; break;
     default: return 0;

@@ -257,17 +257,17 @@ static void test_cameras(void **state)
     views[5].camera.height = 7;
     views[7].camera.fy = nextafter(9, 10);
     strcpy(views[3].camera.name, "other"); /* names belong to images */
-    assert_int_equal(adcgs_sort_by_camera(views, 8, of, order, &n, &error), ADCGS_OK);
+    assert_int_equal(adcgs_group_views(views, 8, of, order, &n, &error), ADCGS_OK);
     assert_int_equal(n, 5);
     assert_memory_equal(of, expected_of, sizeof of);
     assert_memory_equal(order, expected_order, sizeof order);
     for (int i = 0; i < 8; i++)
         views[i].time = 1;
-    assert_int_equal(adcgs_sort_by_camera(views, 8, of, order, &n, &error), ADCGS_OK);
+    assert_int_equal(adcgs_group_views(views, 8, of, order, &n, &error), ADCGS_OK);
     assert_true(order[0] == 0 && order[1] == 3 && order[2] == 6 && order[3] == 1);
-    assert_int_equal(adcgs_sort_by_camera(views, 8, of, NULL, &n, &error), ADCGS_OK);
+    assert_int_equal(adcgs_group_views(views, 8, of, NULL, &n, &error), ADCGS_OK);
     assert_memory_equal(of, expected_of, sizeof of);
-    assert_int_equal(adcgs_sort_by_camera(NULL, 0, of, NULL, &n, &error), ADCGS_OK);
+    assert_int_equal(adcgs_group_views(NULL, 0, of, NULL, &n, &error), ADCGS_OK);
     assert_int_equal(n, 0);
 }
 

@@ -134,11 +134,11 @@ static void what_is_missing_is_found(void **state)
     for (uint32_t i = 0; i < t->f->n; i++) /* the square is missing */
         for (int k = 0; k < t->f->params.k && t->f->moving[i] != 0; k++)
             t->f->keep[adcgs_fmodel_slot(t->f, i, k)] = 0;
-    assert_int_equal(adcgs_moment_find(t, points, MOST, &n, &error), ADCGS_OK);
+    assert_int_equal(adcgs_temporal_densify_find(t, points, MOST, &n, &error), ADCGS_OK);
     assert_true(n > MOST / 4 && n <= MOST);
     for (uint32_t i = 0; i < n; i++)
         assert_true(points[i]->moves && points[i] >= t->stereo.moving && points[i] < t->stereo.moving + t->stereo.n_moving);
-    assert_int_equal(adcgs_moment_find(t, again, MOST, &m, &error), ADCGS_OK);
+    assert_int_equal(adcgs_temporal_densify_find(t, again, MOST, &m, &error), ADCGS_OK);
     assert_int_equal(m, n);
     assert_memory_equal(again, points, n * sizeof *points);
     adcgs_trainer_free(&t);

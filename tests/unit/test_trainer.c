@@ -190,7 +190,7 @@ static void checkpoints_name_what_differs(void **state)
             *field ^= 1;
             const adcgs_status status = adcgs_trainer_restore(t, b.data, b.size, &error);
             *field ^= 1;
-            if (!later && s->binds != ADCGS_BINDS_ALWAYS) {
+            if (!later && s->fixed != ADCGS_FIXED_ALWAYS) {
                 assert_int_equal(status, ADCGS_OK);
                 continue;
             }
@@ -357,7 +357,7 @@ static void faint_primitives_go(void **state)
     const adcgs_train_config config = all_stages_config();
     adcgs_trainer *t = make_faint(&config, 0.1f);
     const uint32_t n = t->f->n;
-    assert_int_equal(adcgs_decide(t, &error), ADCGS_OK);
+    assert_int_equal(adcgs_prune_and_fix(t, &error), ADCGS_OK);
     assert_int_equal(t->f->n, n - 1);
     for (uint32_t i = 0; i < t->f->n; i++)
         for (int j = 0; j < config.params.k; j++)
@@ -377,7 +377,7 @@ static void what_faint_primitives_make_stays(void **state)
         t->stats.opacity[adcgs_fmodel_slot(t->f, i, 1)] *= i < n / 50 ? 0.5f : 1;
         drawn += (10 + (i == 5 ? 10 : 1) * (k - 1.0)) / n;
     }
-    assert_int_equal(adcgs_decide(t, &error), ADCGS_OK);
+    assert_int_equal(adcgs_prune_and_fix(t, &error), ADCGS_OK);
     assert_int_equal(t->f->n, n);
     for (uint32_t i = 0; i < n; i++)
         for (int j = 0; j < k; j++) {
@@ -400,7 +400,7 @@ static uint32_t moving_anchors(const adcgs_train_config *config, float opacity)
             t->stats.weight[adcgs_fmodel_slot(t->f, i, j)] = 1000.0f * (float)t->stats.n;
             t->stats.opacity[adcgs_fmodel_slot(t->f, i, j)] = opacity * t->stats.presence[i];
         }
-    assert_int_equal(adcgs_decide(t, &error), ADCGS_OK);
+    assert_int_equal(adcgs_prune_and_fix(t, &error), ADCGS_OK);
     for (uint32_t i = 0; i < t->f->n; i++)
         moving += t->f->moving[i] != 0;
     adcgs_trainer_free(&t);
@@ -444,7 +444,7 @@ static void what_never_changes_is_static(void **state)
         }
     }
     free(share);
-    assert_int_equal(adcgs_decide(t, &error), ADCGS_OK);
+    assert_int_equal(adcgs_prune_and_fix(t, &error), ADCGS_OK);
     assert_int_equal(t->f->n, n);
     for (uint32_t i = 0; i < n; i++)
         moving += t->f->moving[i] != 0;
@@ -467,9 +467,9 @@ typedef struct poison {
 /** The first view's image with one value replaced. */
 static void put_value(adcgs_trainer *t, float value)
 {
-    assert_int_equal(adcgs_pictures_get(t->pictures, 0, t->taken, &error), ADCGS_OK);
+    assert_int_equal(adcgs_image_store_get(t->pictures, 0, t->taken, &error), ADCGS_OK);
     t->taken[5] = value;
-    assert_int_equal(adcgs_pictures_put(t->pictures, 0, t->taken, &error), ADCGS_OK);
+    assert_int_equal(adcgs_image_store_put(t->pictures, 0, t->taken, &error), ADCGS_OK);
 }
 
 static int give_poison(void *user, const adcgs_train_report *r)
@@ -785,7 +785,7 @@ static void motion_pays_for_little(void **state)
         print_message("loss without motion %g, with motion %g\n", stopped, moved);
         assert_true(stopped > 1.01 * moved);
         t->lambda = (much ? 20 : 2) * (stopped - 1.01 * moved) / bits * 0x1p23;
-        assert_int_equal(adcgs_weigh_motion(t, &error), ADCGS_OK);
+        assert_int_equal(adcgs_test_motion_gain(t, &error), ADCGS_OK);
         for (uint32_t i = 0; i < t->f->n; i++)
             moving += t->f->moving[i] != 0;
         assert_true(much ? moving == 0 : moving > 0);
@@ -833,11 +833,11 @@ static void crops_are_parts_of_pictures(void **state)
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
     adcgs_trainer_prepare_networks(t);
     adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .deform = 1 });
-    assert_int_equal(adcgs_view_draw(t, &t->views[0].view, 0, whole, 0, &error), ADCGS_OK);
+    assert_int_equal(adcgs_view_render(t, &t->views[0].view, 0, whole, 0, &error), ADCGS_OK);
     adcgs_view crop = t->views[0].view;
     assert_true(crop.width == SIDE && crop.height == SIDE);
     adcgs_view_crop(&crop, X, Y, W, H);
-    assert_int_equal(adcgs_view_draw(t, &crop, 0, t->image, 0, &error), ADCGS_OK);
+    assert_int_equal(adcgs_view_render(t, &crop, 0, t->image, 0, &error), ADCGS_OK);
     assert_int_equal(adcgs_trainer_target(t, 0, NULL, &target, &error), ADCGS_OK);
     for (int c = 0; c < 3; c++)
         for (int y = 0; y < H; y++)
@@ -986,10 +986,10 @@ static void dim(adcgs_trainer *t, float by)
 {
     for (uint32_t i = 0; i < t->n_views; i++) {
         const size_t n = 3 * (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
-        assert_int_equal(adcgs_pictures_get(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_get(t->pictures, i, t->taken, &error), ADCGS_OK);
         for (size_t j = 0; j < n; j++)
             t->taken[j] *= by;
-        assert_int_equal(adcgs_pictures_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
     }
 }
 
@@ -1035,7 +1035,7 @@ static void darken(adcgs_trainer *t, const float black[3], float last_share)
         const float share = camera == 2 ? last_share : 0.5f;
         for (size_t j = 0; j < 3 * plane; j++)
             t->taken[j] = j % plane < share * (float)plane ? (black[camera] + (float)(j % 3) / 2) / 255 : 0.5f;
-        assert_int_equal(adcgs_pictures_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
     }
 }
 
@@ -1229,8 +1229,8 @@ static void backgrounds_have_no_gain(void **state)
         const size_t values = 3 * (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
         for (size_t j = 0; j < values; j++)
             t->taken[j] = 1;
-        assert_int_equal(adcgs_pictures_put(t->pictures, i, t->taken, &error), ADCGS_OK);
-        assert_int_equal(adcgs_view_draw(t, &t->views[i].view, i, t->image, 0, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_view_render(t, &t->views[i].view, i, t->image, 0, &error), ADCGS_OK);
         assert_int_equal(adcgs_trainer_target(t, i, NULL, &target, &error), ADCGS_OK);
         for (size_t j = 0; j < values; j++)
             assert_float_equal(t->image[j], target[j], 1e-6);
@@ -1523,7 +1523,7 @@ static void show_dot(adcgs_trainer *t, const float x[3], int scattered)
                 t->taken[c * w * h + j] = t->scene->background[c];
             t->taken[(c * h + y) * w + u] += colour[c];
         }
-        assert_int_equal(adcgs_pictures_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
     }
 }
 

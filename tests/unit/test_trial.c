@@ -120,7 +120,7 @@ static void losing_mechanisms_are_dropped(void **state)
         const adcgs_trials_options options = { .cpu = adcgs_cpu_best(), .pool = i ? alone : pool };
         if (adcgs_trials_run(&trials, &c, scene, &options, &error) != ADCGS_OK)
             fail_msg("%s", error.text);
-        adcgs_trials_tell(&trials, texts[i]);
+        adcgs_trials_format(&trials, texts[i]);
         const adcgs_trial *const price = find(&trials, "scale_price"), *const squares = find(&trials, "squares");
         assert_non_null(price);
         assert_non_null(squares);
@@ -173,7 +173,7 @@ static void short_runs_have_no_trials(void **state)
     assert_true(config.trial_share * (float)config.iterations < 100);
     assert_int_equal(adcgs_trials_run(&trials, &config, scene, &options, &error), ADCGS_OK);
     assert_int_equal(trials.n, 0);
-    adcgs_trials_tell(&trials, text);
+    adcgs_trials_format(&trials, text);
     assert_string_equal(text, "");
     config.iterations = 20000;
     assert_int_equal(adcgs_trial_length(&config), 400);

@@ -145,8 +145,8 @@ int PAGE_EXPORT(view_help)(void) { return page.state.help; }
 /** Whether a screenshot was requested; resets the request. */
 int PAGE_EXPORT(view_shot)(void)
 {
-    const int shot = page.state.shot != ADCGS_SHOT_NONE;
-    page.state.shot = ADCGS_SHOT_NONE;
+    const int shot = page.state.shot != ADCGS_SOURCE_IMAGE_NONE;
+    page.state.shot = ADCGS_SOURCE_IMAGE_NONE;
     return shot;
 }
 
