@@ -361,7 +361,7 @@ static adcgs_status draw_tiers(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *ou
 }
 
 /* Draws and codes the anchors of a model; kept: anchors that a predicted model keeps, else NULL. */
-static adcgs_status draw_anchors(adcgs_plan *plan, uint32_t segment, const adcgs_keep *kept, adcgs_error *error)
+static adcgs_status draw_anchors(adcgs_plan *plan, uint32_t segment, const adcgs_inter *kept, adcgs_error *error)
 {
     adcgs_model *const m = &plan->stream.segments[segment];
     adcgs_drawn *const out = &plan->drawn[segment];
@@ -390,17 +390,17 @@ static adcgs_status draw_key(adcgs_plan *plan, uint32_t segment, adcgs_error *er
 static adcgs_status draw_predicted(adcgs_plan *plan, uint32_t segment, adcgs_error *error)
 {
     adcgs_model *const m = &plan->stream.segments[segment], *const before = m - 1;
-    adcgs_keep kept = { .n = 0 };
+    adcgs_inter kept = { .n = 0 };
     *m = adcgs_random_frame(before);
     m->n = plan->anchors[segment];
     adcgs_status status = adcgs_plan_keep(plan, before, &kept, error);
     if (status == ADCGS_OK)
-        status = adcgs_kept_encode(&kept, before, &plan->drawn[segment].keep, error);
+        status = adcgs_inter_encode(&kept, before, &plan->drawn[segment].keep, error);
     if (status == ADCGS_OK)
         status = draw_anchors(plan, segment, &kept, error);
     if (status == ADCGS_OK)
         status = adcgs_random_join(&kept, before, m, error);
-    adcgs_kept_clear(&kept, NULL);
+    adcgs_inter_clear(&kept, NULL);
     return status;
 }
 

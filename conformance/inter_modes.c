@@ -10,18 +10,18 @@ static int draw(adcgs_plan *plan, int lo, int hi)
     return (int)adcgs_random_range(&plan->state, lo, hi);
 }
 
-static adcgs_keep_mode pick_mode(adcgs_plan *plan, uint32_t anchor)
+static adcgs_inter_mode pick_mode(adcgs_plan *plan, uint32_t anchor)
 {
-    static const adcgs_keep_mode turns[] = { ADCGS_KEEP_DROPPED, ADCGS_KEEP_SAME, ADCGS_KEEP_REFINED };
+    static const adcgs_inter_mode turns[] = { ADCGS_INTER_DROPPED, ADCGS_INTER_SAME, ADCGS_INTER_REFINED };
     switch (plan->kept) {
     case ADCGS_HOLD_ALL:
-        return ADCGS_KEEP_SAME;
+        return ADCGS_INTER_SAME;
     case ADCGS_HOLD_REFINED:
-        return ADCGS_KEEP_REFINED;
+        return ADCGS_INTER_REFINED;
     case ADCGS_HOLD_NONE:
-        return ADCGS_KEEP_DROPPED;
+        return ADCGS_INTER_DROPPED;
     case ADCGS_HOLD_FIRST:
-        return anchor ? ADCGS_KEEP_DROPPED : ADCGS_KEEP_SAME;
+        return anchor ? ADCGS_INTER_DROPPED : ADCGS_INTER_SAME;
     case ADCGS_HOLD_TURNS:
         return turns[anchor % 3];
     default:
@@ -43,25 +43,25 @@ static int32_t change(adcgs_plan *plan, int32_t before, int turn)
     }
 }
 
-static void refine(adcgs_plan *plan, adcgs_keep *kept, const adcgs_model *before, uint32_t anchor, int *turn)
+static void refine(adcgs_plan *plan, adcgs_inter *kept, const adcgs_model *before, uint32_t anchor, int *turn)
 {
-    for (int g = 0; g < ADCGS_KEEP_GROUPS; g++) {
-        const int n = adcgs_keep_channels(&before->params, g);
-        const int coded = g == ADCGS_KEEP_SIGMA && before->is_static[anchor] ? ADCGS_SIGMA_N : n;
+    for (int g = 0; g < ADCGS_INTER_GROUPS; g++) {
+        const int n = adcgs_inter_channels(&before->params, g);
+        const int coded = g == ADCGS_INTER_SIGMA && before->is_static[anchor] ? ADCGS_SIGMA_N : n;
         int16_t *const row = kept->rows[g] + (size_t)anchor * (size_t)n;
         for (int c = 0; plan->changed >> g & 1 && c < coded; c++)
             row[c] = (int16_t)adcgs_clip(change(plan, row[c], (*turn)++), 32767);
     }
 }
 
-adcgs_status adcgs_plan_keep(adcgs_plan *plan, const adcgs_model *before, adcgs_keep *kept, adcgs_error *error)
+adcgs_status adcgs_plan_keep(adcgs_plan *plan, const adcgs_model *before, adcgs_inter *kept, adcgs_error *error)
 {
     int turn = 0;
-    ADCGS_TRY(adcgs_kept_alloc(kept, before, NULL, error));
+    ADCGS_TRY(adcgs_inter_alloc(kept, before, NULL, error));
     for (uint32_t i = 0; i < before->n; i++) {
         kept->mode[i] = (uint8_t)pick_mode(plan, i);
-        kept->n += kept->mode[i] != ADCGS_KEEP_DROPPED;
-        if (kept->mode[i] == ADCGS_KEEP_REFINED)
+        kept->n += kept->mode[i] != ADCGS_INTER_DROPPED;
+        if (kept->mode[i] == ADCGS_INTER_REFINED)
             refine(plan, kept, before, i, &turn);
     }
     return ADCGS_OK;

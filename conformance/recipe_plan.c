@@ -199,9 +199,9 @@ static adcgs_status set_differences(adcgs_plan *plan, const adcgs_command *c, vo
     static const char *const changes[] = { "small", "escapes", "clips", NULL };
     static const char *const groups[] = { "fv", "sigma", "colour", NULL };
     (void)user;
-    ADCGS_TRY(adcgs_command_words(c, 1, 1 + ADCGS_KEEP_GROUPS, error));
+    ADCGS_TRY(adcgs_command_words(c, 1, 1 + ADCGS_INTER_GROUPS, error));
     ADCGS_TRY(adcgs_word_choice(c->word[1], changes, &plan->differences, error));
-    plan->changed = c->n > 2 ? 0 : (1 << ADCGS_KEEP_GROUPS) - 1;
+    plan->changed = c->n > 2 ? 0 : (1 << ADCGS_INTER_GROUPS) - 1;
     for (int i = 2; i < c->n; i++) {
         int group;
         ADCGS_TRY(adcgs_word_choice(c->word[i], groups, &group, error));
@@ -329,7 +329,7 @@ static adcgs_status add_meta(adcgs_plan *plan, const adcgs_command *c, void *use
 static void set_defaults(adcgs_plan *plan)
 {
     *plan = (adcgs_plan){ .seed = 1, .segments = 1, .depth = 4, .origin = { -1, -1, -1 },
-                          .changed = (1 << ADCGS_KEEP_GROUPS) - 1 };
+                          .changed = (1 << ADCGS_INTER_GROUPS) - 1 };
     adcgs_stream_init(&plan->stream);
     plan->stream.level = 1;
     plan->stream.params = (adcgs_params){ .k = 1, .n_fv = 4, .chunks = 1 };

@@ -99,7 +99,7 @@ void adcgs_plan_clear(adcgs_plan *plan);
 /** Make the models and code their features. */
 adcgs_status adcgs_plan_draw(adcgs_plan *plan, adcgs_error *error);
 /** Choose the kept anchors of a model, in inter_modes.c. The caller clears kept. */
-adcgs_status adcgs_plan_keep(adcgs_plan *plan, const adcgs_model *before, adcgs_keep *kept, adcgs_error *error);
+adcgs_status adcgs_plan_keep(adcgs_plan *plan, const adcgs_model *before, adcgs_inter *kept, adcgs_error *error);
 /** Carry out a whole recipe: settings, models, chunks, edits. The caller clears plan, also after a failure. */
 adcgs_status adcgs_plan_build(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_buffer *file, adcgs_error *error);
 /** The stream as chunks. */

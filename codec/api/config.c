@@ -64,7 +64,7 @@ static double seconds_of(const adcgs_stream *s, int64_t tick)
 static void tell_of_push(const adcgs_decoder *d, adcgs_info *info)
 {
     adcgs_push_progress p;
-    adcgs_push_tell(d->push, &p);
+    adcgs_push_get_progress(d->push, &p);
     info->segments = (int)p.segments;
     info->segments_total = (int)p.total;
     info->time_start = seconds_of(&d->stream, p.start);

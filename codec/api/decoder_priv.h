@@ -62,14 +62,14 @@ struct adcgs_decoder {
 adcgs_status adcgs_config_read(adcgs_config *own, const adcgs_config *theirs, adcgs_error *error);
 
 /** Splats to render at a time: those of a segment, and during a crossfade those of the segment before it. */
-typedef struct adcgs_moment {
+typedef struct adcgs_render_state {
     adcgs_primitives now, before;
     int fades;              /**< 0: no crossfade, `before` is unset */
     float weight;           /**< of `now`, 0..1 */
-} adcgs_moment;
+} adcgs_render_state;
 
 /** Fill out for a time. Also checks the floating-point modes. */
-adcgs_status adcgs_decoder_moment(adcgs_decoder *d, double time, adcgs_moment *out, adcgs_error *error);
+adcgs_status adcgs_decoder_state_at(adcgs_decoder *d, double time, adcgs_render_state *out, adcgs_error *error);
 /** Must be called before models are freed or moved. */
 void adcgs_decoder_forget_drawn(adcgs_decoder *d);
 

@@ -44,7 +44,7 @@ static adcgs_status reserve_planar(adcgs_decoder *d, size_t floats, adcgs_error 
 
 /** State for rendering any kind of image. */
 typedef struct picture {
-    adcgs_moment moment;
+    adcgs_render_state state;
     adcgs_view view;
     size_t plane;  /**< floats in one plane */
     float *before; /**< three planes, for the previous segment during a crossfade */
@@ -55,11 +55,11 @@ static adcgs_status prepare(adcgs_decoder *d, const adcgs_camera *camera, double
                             adcgs_error *error)
 {
     ADCGS_TRY(adcgs_view_init(&p->view, camera, d->stream.scene_origin, d->stream.scene_scale, error));
-    ADCGS_TRY(adcgs_decoder_moment(d, time, &p->moment, error));
+    ADCGS_TRY(adcgs_decoder_state_at(d, time, &p->state, error));
     if (!d->raster)
         ADCGS_TRY(adcgs_raster_create(&d->raster, d->cpu, d->pool, &d->memory, error));
     p->plane = (size_t)p->view.width * (size_t)p->view.height;
-    ADCGS_TRY(reserve_planar(d, (planes + (p->moment.fades ? 3 : 0)) * p->plane, error));
+    ADCGS_TRY(reserve_planar(d, (planes + (p->state.fades ? 3 : 0)) * p->plane, error));
     p->before = d->planar + planes * p->plane;
     return ADCGS_OK;
 }
@@ -92,11 +92,11 @@ static adcgs_status draw_one(adcgs_decoder *d, const picture *p, const adcgs_pri
 /** Fill the first three planes with colours or, if depth is nonzero, with the sums that give depth and coverage. */
 static adcgs_status draw(adcgs_decoder *d, const picture *p, int depth, adcgs_error *error)
 {
-    ADCGS_TRY(draw_one(d, p, &p->moment.now, depth, d->planar, error));
-    if (!p->moment.fades)
+    ADCGS_TRY(draw_one(d, p, &p->state.now, depth, d->planar, error));
+    if (!p->state.fades)
         return ADCGS_OK;
-    ADCGS_TRY(draw_one(d, p, &p->moment.before, depth, p->before, error));
-    fade_job job = { p->before, d->planar, 3 * p->plane, 3 * ROWS_PER_JOB * (size_t)p->view.width, p->moment.weight };
+    ADCGS_TRY(draw_one(d, p, &p->state.before, depth, p->before, error));
+    fade_job job = { p->before, d->planar, 3 * p->plane, 3 * ROWS_PER_JOB * (size_t)p->view.width, p->state.weight };
     adcgs_pool_run(d->pool, fade, &job, (p->view.height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
     return ADCGS_OK;
 }

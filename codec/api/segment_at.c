@@ -170,7 +170,7 @@ static adcgs_status bring(adcgs_decoder *d, double time, int blends, uint32_t *s
     return fetch(d, *segment, blends && *is_fade, error);
 }
 
-adcgs_status adcgs_decoder_moment(adcgs_decoder *d, double time, adcgs_moment *out, adcgs_error *error)
+adcgs_status adcgs_decoder_state_at(adcgs_decoder *d, double time, adcgs_render_state *out, adcgs_error *error)
 {
     uint32_t segment;
     ADCGS_TRY(bring(d, time, 1, &segment, &out->fades, error));

@@ -4,12 +4,12 @@
 #include "model/inter_priv.h"
 #include "model/model_priv.h"
 
-static void copy_kept(adcgs_model *to, uint32_t i, const adcgs_keep *kept, const adcgs_model *from, uint32_t j)
+static void copy_kept(adcgs_model *to, uint32_t i, const adcgs_inter *kept, const adcgs_model *from, uint32_t j)
 {
     adcgs_anchor_copy(to, i, from, j);
-    for (int g = 0; g < ADCGS_KEEP_GROUPS; g++) {
-        const size_t n = (size_t)adcgs_keep_channels(&to->params, g);
-        memcpy(adcgs_keep_rows(to, g) + i * n, kept->rows[g] + j * n, n * sizeof(int16_t));
+    for (int g = 0; g < ADCGS_INTER_GROUPS; g++) {
+        const size_t n = (size_t)adcgs_inter_channels(&to->params, g);
+        memcpy(adcgs_inter_rows(to, g) + i * n, kept->rows[g] + j * n, n * sizeof(int16_t));
     }
 }
 
@@ -18,7 +18,7 @@ static int same_bytes(const void *a, const void *b, size_t bytes)
     return bytes == 0 || memcmp(a, b, bytes) == 0;
 }
 
-int adcgs_kept_possible(const adcgs_model *a, const adcgs_model *b, adcgs_error *why)
+int adcgs_inter_possible(const adcgs_model *a, const adcgs_model *b, adcgs_error *why)
 {
     const char *what = NULL;
     if (!adcgs_params_equal(&a->params, &b->params))
@@ -47,71 +47,71 @@ int adcgs_kept_possible(const adcgs_model *a, const adcgs_model *b, adcgs_error 
 /** Whether differences lead exactly from one latent to the other. */
 static int within_reach(int32_t before, int32_t now)
 {
-    return adcgs_clip(before + 64 * adcgs_keep_difference(before, now), 32767) == now;
+    return adcgs_clip(before + 64 * adcgs_inter_difference(before, now), 32767) == now;
 }
 
-static adcgs_keep_mode mode_of(const adcgs_model *a, uint32_t i, const adcgs_model *b, uint32_t j)
+static adcgs_inter_mode mode_of(const adcgs_model *a, uint32_t i, const adcgs_model *b, uint32_t j)
 {
     const size_t eta = a->params.n_eta, fg = (size_t)a->params.k * a->params.n_fg;
     if (a->is_static[i] != b->is_static[j] || a->body[i] != b->body[j] || a->mask[i] != b->mask[j] || a->tier[i] != b->tier[j] ||
         !same_bytes(a->eta + i * eta, b->eta + j * eta, eta * sizeof *a->eta) ||
         !same_bytes(a->fg + i * fg, b->fg + j * fg, fg * sizeof *a->fg))
-        return ADCGS_KEEP_DROPPED;
-    adcgs_keep_mode mode = ADCGS_KEEP_SAME;
-    for (int g = 0; g < ADCGS_KEEP_GROUPS; g++) {
-        const size_t n = (size_t)adcgs_keep_channels(&a->params, g);
-        const int16_t *before = adcgs_keep_rows(a, g) + i * n, *now = adcgs_keep_rows(b, g) + j * n;
+        return ADCGS_INTER_DROPPED;
+    adcgs_inter_mode mode = ADCGS_INTER_SAME;
+    for (int g = 0; g < ADCGS_INTER_GROUPS; g++) {
+        const size_t n = (size_t)adcgs_inter_channels(&a->params, g);
+        const int16_t *before = adcgs_inter_rows(a, g) + i * n, *now = adcgs_inter_rows(b, g) + j * n;
         for (size_t c = 0; c < n; c++) {
             if (!within_reach(before[c], now[c]))
-                return ADCGS_KEEP_DROPPED;
-            mode = before[c] != now[c] ? ADCGS_KEEP_REFINED : mode;
+                return ADCGS_INTER_DROPPED;
+            mode = before[c] != now[c] ? ADCGS_INTER_REFINED : mode;
         }
     }
     return mode;
 }
 
-adcgs_status adcgs_kept_find(adcgs_keep *kept, const adcgs_model *before, const adcgs_model *now, adcgs_error *error)
+adcgs_status adcgs_inter_find(adcgs_inter *kept, const adcgs_model *before, const adcgs_model *now, adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_kept_alloc(kept, before, NULL, error));
+    ADCGS_TRY(adcgs_inter_alloc(kept, before, NULL, error));
     for (uint32_t i = 0, j = 0; i < before->n; i++) {
         while (j < now->n && adcgs_anchor_place(now, j) < adcgs_anchor_place(before, i))
             j++;
-        kept->mode[i] = ADCGS_KEEP_DROPPED;
+        kept->mode[i] = ADCGS_INTER_DROPPED;
         if (j == now->n || adcgs_anchor_place(now, j) != adcgs_anchor_place(before, i))
             continue;
         kept->mode[i] = (uint8_t)mode_of(before, i, now, j);
-        kept->n += kept->mode[i] != ADCGS_KEEP_DROPPED;
-        for (int g = 0; kept->mode[i] == ADCGS_KEEP_REFINED && g < ADCGS_KEEP_GROUPS; g++) {
-            const size_t n = (size_t)adcgs_keep_channels(&now->params, g);
-            memcpy(kept->rows[g] + i * n, adcgs_keep_rows(now, g) + j * n, n * sizeof(int16_t));
+        kept->n += kept->mode[i] != ADCGS_INTER_DROPPED;
+        for (int g = 0; kept->mode[i] == ADCGS_INTER_REFINED && g < ADCGS_INTER_GROUPS; g++) {
+            const size_t n = (size_t)adcgs_inter_channels(&now->params, g);
+            memcpy(kept->rows[g] + i * n, adcgs_inter_rows(now, g) + j * n, n * sizeof(int16_t));
         }
     }
     return ADCGS_OK;
 }
 
 /** Whether an anchor is kept at this place. i: index of the anchors before; calls must ask for places in ascending order. */
-static int is_kept(const adcgs_keep *kept, const adcgs_model *before, uint32_t *i, uint64_t place)
+static int is_kept(const adcgs_inter *kept, const adcgs_model *before, uint32_t *i, uint64_t place)
 {
-    while (*i < before->n && (kept->mode[*i] == ADCGS_KEEP_DROPPED || adcgs_anchor_place(before, *i) < place))
+    while (*i < before->n && (kept->mode[*i] == ADCGS_INTER_DROPPED || adcgs_anchor_place(before, *i) < place))
         ++*i;
     return *i < before->n && adcgs_anchor_place(before, *i) == place;
 }
 
-adcgs_status adcgs_kept_renew(adcgs_model *now, const adcgs_model *before, adcgs_error *error)
+adcgs_status adcgs_inter_renew(adcgs_model *now, const adcgs_model *before, adcgs_error *error)
 {
-    adcgs_keep kept = { .n = 0 };
-    const adcgs_status status = adcgs_kept_find(&kept, before, now, error);
+    adcgs_inter kept = { .n = 0 };
+    const adcgs_status status = adcgs_inter_find(&kept, before, now, error);
     uint32_t i = 0;
     for (uint32_t j = 0; status == ADCGS_OK && j < now->n; j++) {
         if (!is_kept(&kept, before, &i, adcgs_anchor_place(now, j)))
             now->tier[j] = 0;
     }
-    adcgs_kept_clear(&kept, NULL);
+    adcgs_inter_clear(&kept, NULL);
     return status;
 }
 
-adcgs_status adcgs_kept_rest(adcgs_model *rest, const adcgs_keep *kept, const adcgs_model *before, const adcgs_model *now,
-                             adcgs_error *error)
+adcgs_status adcgs_inter_rest(adcgs_model *rest, const adcgs_inter *kept, const adcgs_model *before, const adcgs_model *now,
+                              adcgs_error *error)
 {
     *rest = adcgs_model_frame(now);
     rest->n = now->n - kept->n;
@@ -125,14 +125,14 @@ adcgs_status adcgs_kept_rest(adcgs_model *rest, const adcgs_keep *kept, const ad
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_kept_model(adcgs_model *stay, const adcgs_keep *kept, const adcgs_model *before, adcgs_memory *memory,
-                              adcgs_error *error)
+adcgs_status adcgs_inter_model(adcgs_model *stay, const adcgs_inter *kept, const adcgs_model *before, adcgs_memory *memory,
+                               adcgs_error *error)
 {
     *stay = adcgs_model_frame(before);
     stay->n = kept->n;
     ADCGS_TRY(adcgs_model_alloc(stay, memory, error));
     for (uint32_t i = 0, n = 0; i < before->n; i++)
-        if (kept->mode[i] != ADCGS_KEEP_DROPPED)
+        if (kept->mode[i] != ADCGS_INTER_DROPPED)
             copy_kept(stay, n++, kept, before, i);
     return ADCGS_OK;
 }

@@ -56,7 +56,7 @@ adcgs_cost adcgs_segment_cost(const adcgs_params *params, uint64_t anchors, int 
     return cost;
 }
 
-uint64_t adcgs_kept_work(uint64_t values)
+uint64_t adcgs_inter_work(uint64_t values)
 {
     return VALUE_WORK * values;
 }

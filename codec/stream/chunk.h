@@ -58,8 +58,8 @@ typedef struct adcgs_nets_cost {
 } adcgs_nets_cost;
 void adcgs_nets_cost_add(adcgs_nets_cost *cost, const adcgs_params *params, int role, const adcgs_net *net);
 adcgs_cost adcgs_segment_cost(const adcgs_params *params, uint64_t anchors, int depth, const adcgs_nets_cost *nets);
-/** Work of decoding the kept anchors of a model with this number of values, adcgs_kept_values(). */
-uint64_t adcgs_kept_work(uint64_t values);
+/** Work of decoding the kept anchors of a model with this number of values, adcgs_inter_values(). */
+uint64_t adcgs_inter_work(uint64_t values);
 /** Work of decoding this number of weights, whether they are new or repeated. */
 uint64_t adcgs_weights_work(uint64_t weights);
 

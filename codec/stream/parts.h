@@ -42,7 +42,7 @@ adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_
 adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, const adcgs_model *model, const adcgs_role_ids *ids,
                               adcgs_error *error);
 /** KEEP: the kept anchors of the previous model. left: remaining budget of the level; the function subtracts the cost. */
-adcgs_status adcgs_keep_parse(adcgs_parse *p, const adcgs_level *limits, const adcgs_model *before, adcgs_keep *kept,
+adcgs_status adcgs_keep_parse(adcgs_parse *p, const adcgs_level *limits, const adcgs_model *before, adcgs_inter *kept,
                               adcgs_cost *left, adcgs_memory *memory);
 /**
  * GEOM: allocates the model's arrays after checking the counts, and decodes the positions of a tier or, in a predicted segment,

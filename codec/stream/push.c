@@ -341,7 +341,7 @@ static int64_t available_tick(const adcgs_push_reader *p)
     return s->stage == ADCGS_SEGMENT_NONE ? s->ticks[1] : p->end_before;
 }
 
-void adcgs_push_tell(const adcgs_push_reader *p, adcgs_push_progress *out)
+void adcgs_push_get_progress(const adcgs_push_reader *p, adcgs_push_progress *out)
 {
     const adcgs_stream_reader *r = &p->reader;
     const adcgs_stream *s = r->stream;

@@ -47,7 +47,7 @@ typedef struct adcgs_push_progress {
     int tiers, tiers_received; /**< of the segment being received; 0: none */
 } adcgs_push_progress;
 /** Only after HEAD has been received. */
-void adcgs_push_tell(const adcgs_push_reader *reader, adcgs_push_progress *progress);
+void adcgs_push_get_progress(const adcgs_push_reader *reader, adcgs_push_progress *progress);
 
 /**
  * A copy of the current segment as far as it has been received, if it can be rendered (*drawable). The caller clears it with the

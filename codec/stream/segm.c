@@ -227,17 +227,17 @@ static adcgs_status spend(const adcgs_parse *p, const adcgs_level *limits, adcgs
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_keep_parse(adcgs_parse *p, const adcgs_level *limits, const adcgs_model *before, adcgs_keep *kept,
+adcgs_status adcgs_keep_parse(adcgs_parse *p, const adcgs_level *limits, const adcgs_model *before, adcgs_inter *kept,
                               adcgs_cost *left, adcgs_memory *memory)
 {
-    const adcgs_cost cost = { .work = adcgs_kept_work(adcgs_kept_values(before)) };
+    const adcgs_cost cost = { .work = adcgs_inter_work(adcgs_inter_values(before)) };
     const size_t bytes = adcgs_reader_left(&p->r);
     const uint8_t *data;
     adcgs_range_dec d;
     ADCGS_TRY(spend(p, limits, cost, left));
     ADCGS_TRY(adcgs_parse_bytes(p, "modes", bytes, &data));
     adcgs_range_dec_init(&d, data, bytes);
-    ADCGS_TRY(adcgs_kept_decode(kept, before, &d, memory, p->error));
+    ADCGS_TRY(adcgs_inter_decode(kept, before, &d, memory, p->error));
     adcgs_parse_trace_end(p, &d);
     return ADCGS_OK;
 }

@@ -113,11 +113,11 @@ adcgs_status adcgs_segment_keep(adcgs_segment *s, adcgs_parse *p)
     if (s->stage != ADCGS_SEGMENT_STARTED || !s->model.predicted || s->has_kept)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "KEEP: expected once, after SEGM of a predicted segment");
     s->has_kept = 1;
-    adcgs_keep kept = { .n = 0 };
+    adcgs_inter kept = { .n = 0 };
     adcgs_status status = adcgs_keep_parse(p, s->limits, model_before(s), &kept, &s->left, s->options->memory);
     if (status == ADCGS_OK)
-        status = adcgs_kept_model(&s->coarser, &kept, model_before(s), s->options->memory, s->error);
-    adcgs_kept_clear(&kept, s->options->memory);
+        status = adcgs_inter_model(&s->coarser, &kept, model_before(s), s->options->memory, s->error);
+    adcgs_inter_clear(&kept, s->options->memory);
     return status;
 }
 

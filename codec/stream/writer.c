@@ -87,7 +87,7 @@ static adcgs_status check_segment(adcgs_writer *w, const adcgs_model *before, co
 {
     const adcgs_level *limits = w->limits;
     spend_tiers(w, model);
-    w->spent.work += before ? adcgs_kept_work(adcgs_kept_values(before)) : 0;
+    w->spent.work += before ? adcgs_inter_work(adcgs_inter_values(before)) : 0;
     if (w->spent.bytes > limits->model_bytes || w->spent.work > limits->work || w->weights > limits->weights
         || model->depth > limits->depth || w->n_nets > limits->networks)
         return adcgs_fail(w->error, ADCGS_ERR_LIMIT,
@@ -218,14 +218,14 @@ static adcgs_status write_tiers(adcgs_writer *w, uint32_t segment, adcgs_model *
     return status;
 }
 
-static adcgs_status write_rest(adcgs_writer *w, uint32_t segment, const adcgs_keep *kept, const adcgs_model *before,
+static adcgs_status write_rest(adcgs_writer *w, uint32_t segment, const adcgs_inter *kept, const adcgs_model *before,
                                const adcgs_model *model)
 {
     adcgs_model rest;
     const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_KEEP, segment, 0);
-    ADCGS_TRY(adcgs_kept_encode(kept, before, w->out, w->error));
+    ADCGS_TRY(adcgs_inter_encode(kept, before, w->out, w->error));
     ADCGS_TRY(end_chunk(w, ADCGS_TYPE_KEEP, begin));
-    adcgs_status status = adcgs_kept_rest(&rest, kept, before, model, w->error);
+    adcgs_status status = adcgs_inter_rest(&rest, kept, before, model, w->error);
     for (uint32_t i = 0; status == ADCGS_OK && i < rest.n; i++)
         if (rest.tier[i])
             status = adcgs_fail(w->error, ADCGS_ERR_USAGE, "stream: a new anchor of segment %u is of tier %u", segment,
@@ -238,11 +238,11 @@ static adcgs_status write_rest(adcgs_writer *w, uint32_t segment, const adcgs_ke
 
 static adcgs_status write_predicted(adcgs_writer *w, uint32_t segment, const adcgs_model *before, const adcgs_model *model)
 {
-    adcgs_keep kept = { .n = 0 };
-    adcgs_status status = adcgs_kept_find(&kept, before, model, w->error);
+    adcgs_inter kept = { .n = 0 };
+    adcgs_status status = adcgs_inter_find(&kept, before, model, w->error);
     if (status == ADCGS_OK)
         status = write_rest(w, segment, &kept, before, model);
-    adcgs_kept_clear(&kept, NULL);
+    adcgs_inter_clear(&kept, NULL);
     return status;
 }
 
@@ -368,7 +368,7 @@ adcgs_status adcgs_writer_check(const adcgs_stream *stream, uint32_t i, const ad
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment is predicted");
     if (model->predicted && before->absent)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u is predicted from a segment with absent tiers", i);
-    if (model->predicted && !adcgs_kept_possible(before, model, error))
+    if (model->predicted && !adcgs_inter_possible(before, model, error))
         return ADCGS_ERR_USAGE;
     if (i > 0 && (start <= span[0] || start < span[1]))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u starts before the previous one ends", i);

@@ -177,8 +177,8 @@ adcgs_status adcgs_encode_predict(adcgs_model *model, const adcgs_model *before,
     adcgs_error why;
     if (model->params.time_rows)
         ADCGS_TRY(keep_motion(model, before, error));
-    model->predicted = (uint8_t)adcgs_kept_possible(before, model, &why);
-    return model->predicted ? adcgs_kept_renew(model, before, error) : ADCGS_OK;
+    model->predicted = (uint8_t)adcgs_inter_possible(before, model, &why);
+    return model->predicted ? adcgs_inter_renew(model, before, error) : ADCGS_OK;
 }
 
 static adcgs_status add_segment(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_cuts *cuts,

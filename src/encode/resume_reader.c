@@ -66,7 +66,7 @@ static adcgs_status take_last(adcgs_resume_reader *p, adcgs_model *model, adcgs_
     int drawable = 0;
     if (!adcgs_push_has_head(p->reader))
         return ADCGS_OK;
-    adcgs_push_tell(p->reader, &progress);
+    adcgs_push_get_progress(p->reader, &progress);
     if (progress.tiers)
         ADCGS_TRY(adcgs_push_peek(p->reader, model, &drawable, error));
     if (drawable && !model->absent && model->layers == adcgs_params_layers(&model->params))

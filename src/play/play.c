@@ -155,7 +155,7 @@ static void init(adcgs_player *p, const adcgs_play_settings *s)
     if (!s->source.feed)
         adcgs_player_has_all(p);
     else
-        clock->reach = 0.0; /* nothing playable has arrived */
+        clock->available = 0.0; /* nothing playable has arrived */
     if (s->info.truncated && !s->source.feed)
         adcgs_play_say(&p->state, "the stream ends early");
 }

@@ -18,7 +18,7 @@ static double length(const adcgs_play_clock *clock)
 
 void adcgs_play_clock_init(adcgs_play_clock *clock, double begin, double end, double rate, double now)
 {
-    *clock = (adcgs_play_clock){.rate = rate, .seen = now, .reach = INFINITY, .loop = 1};
+    *clock = (adcgs_play_clock){.rate = rate, .seen = now, .available = INFINITY, .loop = 1};
     adcgs_play_clock_span(clock, begin, end);
 }
 
@@ -42,7 +42,7 @@ void adcgs_play_clock_tick(adcgs_play_clock *clock, double now)
     clock->seen = now;
     if (!clock->playing || adcgs_play_clock_waits(clock))
         return;
-    clock->position = ADCGS_MIN(clock->position + passed * adcgs_play_clock_factor(clock), clock->reach);
+    clock->position = ADCGS_MIN(clock->position + passed * adcgs_play_clock_factor(clock), clock->available);
     if (clock->position < length(clock))
         return;
     clock->playing = clock->loop;
@@ -81,7 +81,7 @@ void adcgs_play_clock_faster(adcgs_play_clock *clock, int steps)
 
 int adcgs_play_clock_waits(const adcgs_play_clock *clock)
 {
-    return clock->playing && clock->position >= clock->reach;
+    return clock->playing && clock->position >= clock->available;
 }
 
 int adcgs_play_clock_frame(const adcgs_play_clock *clock)

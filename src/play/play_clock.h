@@ -14,7 +14,7 @@ typedef struct adcgs_play_clock {
     int frames;      /**< at least 1 */
     double position; /**< seconds since begin, in [0, frames / rate) */
     double seen;     /**< wall clock at the last tick */
-    double reach;    /**< seconds since begin that are available; playback waits there. Infinity: the whole stream */
+    double available; /**< seconds since begin that are available; playback waits there. Infinity: the whole stream */
     int speed;       /**< power of two */
     int playing, loop;
 } adcgs_play_clock;

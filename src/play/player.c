@@ -55,7 +55,7 @@ static void set_span(adcgs_player *p)
     if (!p->settings->is_span)
         adcgs_play_clock_span(clock, info->time_start,
                               promised ? info->time_end : ADCGS_MAX(info->time_available, info->time_start));
-    clock->reach = p->come.over ? INFINITY : info->time_available - clock->begin;
+    clock->available = p->come.over ? INFINITY : info->time_available - clock->begin;
 }
 
 static void take_come(adcgs_player *p, const adcgs_come *come)

@@ -28,16 +28,16 @@ uint32_t adcgs_info_count_gaussians(const adcgs_model *m)
 adcgs_status adcgs_info_kept(const adcgs_info_report *r, uint32_t segment, uint32_t *same, uint32_t *refined, adcgs_error *error)
 {
     const adcgs_model *now = &r->stream.segments[segment];
-    adcgs_keep kept = { .n = 0 };
+    adcgs_inter kept = { .n = 0 };
     *same = *refined = 0;
     if (!now->predicted)
         return ADCGS_OK;
-    const adcgs_status status = adcgs_kept_find(&kept, now - 1, now, error);
+    const adcgs_status status = adcgs_inter_find(&kept, now - 1, now, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < now[-1].n; i++) {
-        *same += kept.mode[i] == ADCGS_KEEP_SAME;
-        *refined += kept.mode[i] == ADCGS_KEEP_REFINED;
+        *same += kept.mode[i] == ADCGS_INTER_SAME;
+        *refined += kept.mode[i] == ADCGS_INTER_REFINED;
     }
-    adcgs_kept_clear(&kept, NULL);
+    adcgs_inter_clear(&kept, NULL);
     return status;
 }
 

@@ -88,30 +88,30 @@ static void try_segm(const uint8_t *data, size_t size, const adcgs_stream *strea
     adcgs_buffer_clear(&out);
 }
 
-static void require_same(const adcgs_keep *a, const adcgs_keep *b, const adcgs_model *before)
+static void require_same(const adcgs_inter *a, const adcgs_inter *b, const adcgs_model *before)
 {
     FUZZ_REQUIRE(a->n == b->n && memcmp(a->mode, b->mode, before->n) == 0);
-    for (int g = 0; g < ADCGS_KEEP_GROUPS; g++)
-        FUZZ_REQUIRE(memcmp(a->rows[g], b->rows[g], before->n * (size_t)adcgs_keep_channels(&before->params, g) * 2) == 0);
+    for (int g = 0; g < ADCGS_INTER_GROUPS; g++)
+        FUZZ_REQUIRE(memcmp(a->rows[g], b->rows[g], before->n * (size_t)adcgs_inter_channels(&before->params, g) * 2) == 0);
 }
 
 /** KEEP, the data of inter-segment prediction: equal when coded and read again, possibly in other bytes. */
 static void try_keep(const uint8_t *data, size_t size, const adcgs_model *before)
 {
-    adcgs_keep kept = { .n = 0 }, again = { .n = 0 };
+    adcgs_inter kept = { .n = 0 }, again = { .n = 0 };
     adcgs_cost left = { UINT64_MAX, UINT64_MAX };
     adcgs_memory memory = { .limit = 0 };
     adcgs_buffer out;
     adcgs_parse p = parse_of(data, size);
     adcgs_buffer_init(&out);
     if (adcgs_keep_parse(&p, adcgs_level_get(1), before, &kept, &left, &memory) == ADCGS_OK) {
-        FUZZ_REQUIRE(adcgs_kept_encode(&kept, before, &out, NULL) == ADCGS_OK);
+        FUZZ_REQUIRE(adcgs_inter_encode(&kept, before, &out, NULL) == ADCGS_OK);
         p = parse_of(out.data, out.size);
         FUZZ_REQUIRE(adcgs_keep_parse(&p, adcgs_level_get(1), before, &again, &left, &memory) == ADCGS_OK);
         require_same(&kept, &again, before);
     }
-    adcgs_kept_clear(&kept, &memory);
-    adcgs_kept_clear(&again, &memory);
+    adcgs_inter_clear(&kept, &memory);
+    adcgs_inter_clear(&again, &memory);
     FUZZ_REQUIRE(memory.used == 0);
     adcgs_buffer_clear(&out);
 }

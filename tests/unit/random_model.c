@@ -248,7 +248,7 @@ static int at_place(const adcgs_model *m, uint32_t anchor, uint64_t place)
 }
 
 /** True if one of the model's first `settled` anchors, or a predicted anchor, has this voxel. */
-static int is_taken(const adcgs_model *m, uint32_t settled, const adcgs_keep *kept, const adcgs_model *before,
+static int is_taken(const adcgs_model *m, uint32_t settled, const adcgs_inter *kept, const adcgs_model *before,
                     const uint32_t voxel[3])
 {
     const uint64_t place = adcgs_morton(voxel);
@@ -256,11 +256,11 @@ static int is_taken(const adcgs_model *m, uint32_t settled, const adcgs_keep *ke
     for (uint32_t i = 0; i < settled && !taken; i++)
         taken = at_place(m, i, place);
     for (uint32_t i = 0; i < before->n && !taken; i++)
-        taken = kept->mode[i] != ADCGS_KEEP_DROPPED && at_place(before, i, place);
+        taken = kept->mode[i] != ADCGS_INTER_DROPPED && at_place(before, i, place);
     return taken;
 }
 
-adcgs_status adcgs_random_settle(adcgs_model *m, const adcgs_keep *kept, const adcgs_model *before, adcgs_error *error)
+adcgs_status adcgs_random_settle(adcgs_model *m, const adcgs_inter *kept, const adcgs_model *before, adcgs_error *error)
 {
     const uint32_t side = 1U << m->depth;
     if ((uint64_t)m->n + kept->n > UINT64_C(1) << 3 * m->depth)
@@ -282,17 +282,17 @@ static int32_t random_steps_of(int16_t before, uint64_t *state)
     return adcgs_clip(before + 64 * draw(state, -most, most), 32767);
 }
 
-static void random_modes(adcgs_keep *kept, const adcgs_model *before, uint64_t *state)
+static void random_modes(adcgs_inter *kept, const adcgs_model *before, uint64_t *state)
 {
     const int dropped_most = draw(state, 0, 99); /* hundredths */
     for (uint32_t i = 0; i < before->n; i++) {
-        kept->mode[i] = (uint8_t)(draw(state, 0, 99) < dropped_most ? ADCGS_KEEP_DROPPED :
-                                  draw(state, 0, 1)                 ? ADCGS_KEEP_SAME :
-                                                                      ADCGS_KEEP_REFINED);
-        kept->n += kept->mode[i] != ADCGS_KEEP_DROPPED;
-        for (int g = 0; kept->mode[i] == ADCGS_KEEP_REFINED && g < ADCGS_KEEP_GROUPS; g++) {
-            const int n = adcgs_keep_channels(&before->params, g);
-            const int coded = g == ADCGS_KEEP_SIGMA && before->is_static[i] ? ADCGS_SIGMA_N : n;
+        kept->mode[i] = (uint8_t)(draw(state, 0, 99) < dropped_most ? ADCGS_INTER_DROPPED :
+                                  draw(state, 0, 1)                 ? ADCGS_INTER_SAME :
+                                                                      ADCGS_INTER_REFINED);
+        kept->n += kept->mode[i] != ADCGS_INTER_DROPPED;
+        for (int g = 0; kept->mode[i] == ADCGS_INTER_REFINED && g < ADCGS_INTER_GROUPS; g++) {
+            const int n = adcgs_inter_channels(&before->params, g);
+            const int coded = g == ADCGS_INTER_SIGMA && before->is_static[i] ? ADCGS_SIGMA_N : n;
             int16_t *const row = kept->rows[g] + (size_t)i * (size_t)n;
             for (int c = 0; draw(state, 0, 3) && c < coded; c++)
                 row[c] = (int16_t)random_steps_of(row[c], state);
@@ -312,10 +312,10 @@ static adcgs_status random_networks(adcgs_model *m, const adcgs_model *before, u
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_random_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *m, adcgs_error *error)
+adcgs_status adcgs_random_join(const adcgs_inter *kept, const adcgs_model *before, adcgs_model *m, adcgs_error *error)
 {
     adcgs_model stay;
-    adcgs_status status = adcgs_kept_model(&stay, kept, before, NULL, error);
+    adcgs_status status = adcgs_inter_model(&stay, kept, before, NULL, error);
     if (status == ADCGS_OK)
         status = adcgs_tiers_join(&stay, m, NULL, error);
     adcgs_model_clear(&stay, NULL);
@@ -323,11 +323,11 @@ adcgs_status adcgs_random_join(const adcgs_keep *kept, const adcgs_model *before
 }
 
 /** Makes new anchors in a frame that has its networks, then joins the predicted ones. */
-static adcgs_status random_joined(adcgs_model *m, const adcgs_model *before, adcgs_keep *kept, uint32_t n, uint64_t *state,
+static adcgs_status random_joined(adcgs_model *m, const adcgs_model *before, adcgs_inter *kept, uint32_t n, uint64_t *state,
                                   adcgs_error *error)
 {
     const uint64_t cells = UINT64_C(1) << 3 * m->depth;
-    ADCGS_TRY(adcgs_kept_alloc(kept, before, NULL, error));
+    ADCGS_TRY(adcgs_inter_alloc(kept, before, NULL, error));
     random_modes(kept, before, state);
     m->n = (uint32_t)ADCGS_MIN((uint64_t)draw(state, kept->n == 0, (int)n), cells - kept->n);
     ADCGS_TRY(adcgs_model_alloc(m, NULL, error));
@@ -340,12 +340,12 @@ static adcgs_status random_joined(adcgs_model *m, const adcgs_model *before, adc
 
 adcgs_status adcgs_random_follower(adcgs_model *m, const adcgs_model *before, uint32_t n, uint64_t *state, adcgs_error *error)
 {
-    adcgs_keep kept = { .n = 0 };
+    adcgs_inter kept = { .n = 0 };
     *m = adcgs_random_frame(before);
     adcgs_status status = random_networks(m, before, state, error);
     if (status == ADCGS_OK)
         status = random_joined(m, before, &kept, n, state, error);
-    adcgs_kept_clear(&kept, NULL);
+    adcgs_inter_clear(&kept, NULL);
     return status;
 }
 

@@ -46,8 +46,8 @@ adcgs_status adcgs_random_values(adcgs_model *model, uint64_t *state, adcgs_erro
 /** A model without anchors and networks, predicted from another, with which it shares everything else. */
 adcgs_model adcgs_random_frame(const adcgs_model *before);
 /** Moves new anchors whose voxels are taken, by each other or by predicted anchors, to free ones; sorts them all. */
-adcgs_status adcgs_random_settle(adcgs_model *added, const adcgs_keep *kept, const adcgs_model *before, adcgs_error *error);
+adcgs_status adcgs_random_settle(adcgs_model *added, const adcgs_inter *kept, const adcgs_model *before, adcgs_error *error);
 /** Joins the predicted anchors of the model before with the new anchors that a model holds, in this model. */
-adcgs_status adcgs_random_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *model, adcgs_error *error);
+adcgs_status adcgs_random_join(const adcgs_inter *kept, const adcgs_model *before, adcgs_model *model, adcgs_error *error);
 
 #endif

@@ -123,7 +123,7 @@ static void what_is_settled_is_kept(void **state)
 {
     const adcgs_train_config config = follow_config();
     adcgs_model before, model;
-    adcgs_keep kept = { .n = 0 };
+    adcgs_inter kept = { .n = 0 };
     (void)state;
     learn(&before, NULL);
     adcgs_trainer *t = make(&config, &before, pool);
@@ -132,11 +132,11 @@ static void what_is_settled_is_kept(void **state)
     t->unfreeze_tests = UINT8_MAX; /* a run this short leaves large errors, and would unfreeze everything */
     run(t, NULL, NULL);
     take_model(&model, t->f);
-    assert_true(adcgs_kept_possible(&before, &model, &error));
-    assert_int_equal(adcgs_kept_find(&kept, &before, &model, &error), ADCGS_OK);
+    assert_true(adcgs_inter_possible(&before, &model, &error));
+    assert_int_equal(adcgs_inter_find(&kept, &before, &model, &error), ADCGS_OK);
     assert_true(settled(t->f) > 0 && settled(t->f) <= first);
     assert_in_range(kept.n, settled(t->f), before.n);
-    adcgs_kept_clear(&kept, NULL);
+    adcgs_inter_clear(&kept, NULL);
     adcgs_model_clear(&model, NULL);
     adcgs_model_clear(&before, NULL);
     adcgs_trainer_free(&t);

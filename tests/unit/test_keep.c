@@ -80,19 +80,19 @@ static adcgs_model *append_same(adcgs_stream *stream, uint32_t nth)
 {
     adcgs_error error = { ADCGS_OK, "" };
     adcgs_model *m = &stream->segments[stream->n_segments], *before = m - 1;
-    adcgs_keep kept = { .n = 0 };
+    adcgs_inter kept = { .n = 0 };
     *m = adcgs_random_frame(before);
     for (int role = 0; role < ADCGS_ROLES; role++)
         if (before->net[role].present)
             check(adcgs_net_copy(&m->net[role], &before->net[role], NULL, &error), &error);
     check(adcgs_model_alloc(m, NULL, &error), &error);
-    check(adcgs_kept_alloc(&kept, before, NULL, &error), &error);
+    check(adcgs_inter_alloc(&kept, before, NULL, &error), &error);
     for (uint32_t i = 0; i < before->n; i++) {
-        kept.mode[i] = nth && i % nth == 0 ? ADCGS_KEEP_DROPPED : ADCGS_KEEP_SAME;
-        kept.n += kept.mode[i] == ADCGS_KEEP_SAME;
+        kept.mode[i] = nth && i % nth == 0 ? ADCGS_INTER_DROPPED : ADCGS_INTER_SAME;
+        kept.n += kept.mode[i] == ADCGS_INTER_SAME;
     }
     check(adcgs_random_join(&kept, before, m, &error), &error);
-    adcgs_kept_clear(&kept, NULL);
+    adcgs_inter_clear(&kept, NULL);
     return next_segment(stream);
 }
 
@@ -196,7 +196,7 @@ static void test_dropped(void **state)
         m->mask[i] = m->mask[i] == 3 ? 1 : 3;
     memset(m->fg, 0, (size_t)m->n * params.k * params.n_fg * sizeof *m->fg);
     check(adcgs_random_values(m, &seed, &error), &error);
-    check(adcgs_kept_renew(m, m - 1, &error), &error);
+    check(adcgs_inter_renew(m, m - 1, &error), &error);
     assert_true(check_round_trip(&stream, &anchors) < 16);
     assert_int_equal(anchors, 40);
     adcgs_stream_clear(&stream, NULL);
@@ -205,12 +205,12 @@ static void test_dropped(void **state)
 /** Changes a latent of each third anchor, if it has the channel. \return number of changed anchors. */
 static int change_latents(adcgs_model *m, int group, int channel, int32_t steps)
 {
-    const int n = adcgs_keep_channels(&m->params, group);
+    const int n = adcgs_inter_channels(&m->params, group);
     int changed = 0;
     for (uint32_t i = 0; i < m->n; i += 3) {
-        int16_t *const y = adcgs_keep_rows(m, group) + (size_t)i * (size_t)n + channel;
+        int16_t *const y = adcgs_inter_rows(m, group) + (size_t)i * (size_t)n + channel;
         const int16_t old = *y;
-        if (group == ADCGS_KEEP_SIGMA && m->is_static[i] && channel >= ADCGS_SIGMA_N)
+        if (group == ADCGS_INTER_SIGMA && m->is_static[i] && channel >= ADCGS_SIGMA_N)
             continue;
         *y = (int16_t)adcgs_clip(*y + 64 * steps, 32767);
         changed += *y != old;
@@ -225,7 +225,7 @@ static void test_differences(void **state)
     static const int32_t steps[] = { 1, -1, 2, -13, 14, -14, 15, -15, 16, 17, -18, 63, 300, -700, 1023, -1023, 2000, -2000 };
     (void)state;
     for (size_t s = 0; s < ADCGS_COUNTOF(steps); s++)
-        for (int group = 0; group < ADCGS_KEEP_GROUPS; group++) {
+        for (int group = 0; group < ADCGS_INTER_GROUPS; group++) {
             adcgs_stream stream;
             uint64_t seed = 5 + s;
             uint32_t anchors = 1;
@@ -233,7 +233,7 @@ static void test_differences(void **state)
             params.spans = (uint8_t)(s & 1);
             make_stream(&stream, &params, 2, 30, &seed);
             adcgs_model *const m = append_same(&stream, 0);
-            const int channels = adcgs_keep_channels(&params, group);
+            const int channels = adcgs_inter_channels(&params, group);
             for (int c = 0; c < channels; c += 2)
                 assert_true(change_latents(m, group, c, steps[s]) > 0);
             assert_true(check_round_trip(&stream, &anchors) > 1);
@@ -248,7 +248,7 @@ static void test_out_of_reach(void **state)
 {
     adcgs_error error = { ADCGS_OK, "" };
     adcgs_stream stream;
-    adcgs_keep kept = { .n = 0 };
+    adcgs_inter kept = { .n = 0 };
     uint64_t seed = 6;
     adcgs_params params = some_params(&seed);
     params.n_eta = 2;
@@ -263,11 +263,11 @@ static void test_out_of_reach(void **state)
     m->colour[3 * 5] = (int16_t)(m->colour[3 * 5] - 32);
     m->fv[3 * 6] = 32767; /* the limits are reachable from any value */
     m->fv[3 * 7] = -32767;
-    check(adcgs_kept_find(&kept, m - 1, m, &error), &error);
+    check(adcgs_inter_find(&kept, m - 1, m, &error), &error);
     for (uint32_t i = 0; i < m->n; i++)
-        assert_int_equal(kept.mode[i], i < 6 ? ADCGS_KEEP_DROPPED : i < 8 ? ADCGS_KEEP_REFINED : ADCGS_KEEP_SAME);
+        assert_int_equal(kept.mode[i], i < 6 ? ADCGS_INTER_DROPPED : i < 8 ? ADCGS_INTER_REFINED : ADCGS_INTER_SAME);
     assert_int_equal(kept.n, 4);
-    adcgs_kept_clear(&kept, NULL);
+    adcgs_inter_clear(&kept, NULL);
     adcgs_stream_clear(&stream, NULL);
 }
 
@@ -296,8 +296,8 @@ static void test_networks(void **state)
     } while (!m->net[ADCGS_ROLE_COARSE].present);
     check_round_trip(&stream, NULL);
     assert_true(stream.bytes.networks > none);
-    assert_true(adcgs_kept_possible(before, m, &error));
-    assert_false(adcgs_kept_possible(m, before, &error));
+    assert_true(adcgs_inter_possible(before, m, &error));
+    assert_false(adcgs_inter_possible(m, before, &error));
     assert_non_null(strstr(error.text, "networks"));
     adcgs_stream_clear(&stream, NULL);
 }

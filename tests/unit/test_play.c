@@ -217,17 +217,17 @@ static void test_clock_waits(void **state)
     assert_true(clock.frames > 1000000);
     adcgs_play_clock_toggle(&clock);
     assert_false(adcgs_play_clock_waits(&clock));
-    clock.reach = -INFINITY;
+    clock.available = -INFINITY;
     assert_true(adcgs_play_clock_waits(&clock));
     adcgs_play_clock_tick(&clock, 3.0);
     assert_int_equal(adcgs_play_clock_frame(&clock), 0);
-    clock.reach = 0.4;
+    clock.available = 0.4;
     adcgs_play_clock_tick(&clock, 3.2);
     assert_int_equal(adcgs_play_clock_frame(&clock), 2);
     adcgs_play_clock_tick(&clock, 9.0);
     assert_true(adcgs_play_clock_waits(&clock) && clock.playing);
     assert_int_equal(adcgs_play_clock_frame(&clock), 4);
-    clock.reach = INFINITY;
+    clock.available = INFINITY;
     adcgs_play_clock_tick(&clock, 9.1);
     assert_int_equal(adcgs_play_clock_frame(&clock), 5);
     adcgs_play_clock_span(&clock, 1.0, 1.3); /* the stream is shorter than expected */

@@ -29,7 +29,7 @@ void PAGE_EXPORT(view_span)(const adcgs_info *info, int over)
     adcgs_play_clock *const clock = &page.state.clock;
     adcgs_play_clock_span(clock, info->time_start,
                           isfinite(info->time_end) ? info->time_end : ADCGS_MAX(info->time_available, info->time_start));
-    clock->reach = over ? INFINITY : info->time_available - clock->begin;
+    clock->available = over ? INFINITY : info->time_available - clock->begin;
     if (info->tiers != page.scale.all)
         adcgs_play_scale_init(&page.scale, info->tiers);
 }
