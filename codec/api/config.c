@@ -39,7 +39,7 @@ adcgs_status adcgs_config_read(adcgs_config *own, const adcgs_config *theirs, ad
 }
 
 /** Properties that are known before any segment is read. */
-static void tell_of_demand(const adcgs_decoder *d, adcgs_info *info)
+static void describe_on_demand(const adcgs_decoder *d, adcgs_info *info)
 {
     const uint32_t n = adcgs_seek_segments(d->seek);
     const adcgs_stream *s = &d->stream;
@@ -61,7 +61,7 @@ static double seconds_of(const adcgs_stream *s, int64_t tick)
 }
 
 /** Properties of a pushed stream, and its progress. */
-static void tell_of_push(const adcgs_decoder *d, adcgs_info *info)
+static void describe_push(const adcgs_decoder *d, adcgs_info *info)
 {
     adcgs_push_progress p;
     adcgs_push_get_progress(d->push, &p);
@@ -93,10 +93,10 @@ adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size
     own.faults = (int)ADCGS_MIN(decoder->faults, (uint32_t)INT32_MAX);
     own.time_committed = INFINITY;
     if (decoder->seek)
-        tell_of_demand(decoder, &own);
+        describe_on_demand(decoder, &own);
     own.time_available = own.time_end;
     if (decoder->push)
-        tell_of_push(decoder, &own);
+        describe_push(decoder, &own);
     own.size = ADCGS_MIN(size, sizeof own);
     memset(info, 0, size);
     memcpy(info, &own, own.size);

@@ -15,7 +15,7 @@ static adcgs_status check_config(const adcgs_config *config, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static void say_opened(const adcgs_decoder *d)
+static void log_opened(const adcgs_decoder *d)
 {
     adcgs_log_say(&d->log, ADCGS_LOG_INFO,
                   "stream: level %d, %u segments, %llu bytes; CPU level %s, %d threads, %llu bytes of memory", d->stream.level,
@@ -100,7 +100,7 @@ static adcgs_status open_decoder(adcgs_decoder *d, origin *from, const adcgs_con
         return adcgs_push_create(&d->push, &d->stream, &options, error);
     }
     ADCGS_TRY(open_stream(d, from, &options, error));
-    say_opened(d);
+    log_opened(d);
     return ADCGS_OK;
 }
 

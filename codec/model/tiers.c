@@ -39,7 +39,8 @@ adcgs_model adcgs_model_frame(const adcgs_model *model)
 }
 
 /** The anchors of tiers first .. last, with the model's networks. */
-static adcgs_status take(adcgs_model *dst, const adcgs_model *src, int first, int last, adcgs_memory *memory, adcgs_error *error)
+static adcgs_status copy_tiers(adcgs_model *dst, const adcgs_model *src, int first, int last, adcgs_memory *memory,
+                               adcgs_error *error)
 {
     *dst = adcgs_model_frame(src);
     dst->n = 0;
@@ -54,12 +55,12 @@ static adcgs_status take(adcgs_model *dst, const adcgs_model *src, int first, in
 
 adcgs_status adcgs_model_tier(adcgs_model *dst, const adcgs_model *src, int tier, adcgs_memory *memory, adcgs_error *error)
 {
-    return take(dst, src, tier, tier, memory, error);
+    return copy_tiers(dst, src, tier, tier, memory, error);
 }
 
 adcgs_status adcgs_model_coarser(adcgs_model *dst, const adcgs_model *src, int tiers, adcgs_memory *memory, adcgs_error *error)
 {
-    const adcgs_status status = take(dst, src, 0, tiers - 1, memory, error);
+    const adcgs_status status = copy_tiers(dst, src, 0, tiers - 1, memory, error);
     dst->absent = (uint8_t)(src->finest + 1 - tiers);
     return status;
 }

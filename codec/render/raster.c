@@ -47,7 +47,7 @@ struct adcgs_raster {
     adcgs_kept kept;
 };
 
-static adcgs_status grow(adcgs_raster *r, room *x, uint64_t count, size_t size, adcgs_error *error)
+static adcgs_status grow_room(adcgs_raster *r, room *x, uint64_t count, size_t size, adcgs_error *error)
 {
     if (count > SIZE_MAX / 2 / size)
         return adcgs_fail(error, ADCGS_ERR_LIMIT, "rendering: %llu elements of workspace", (unsigned long long)count);
@@ -124,13 +124,13 @@ static adcgs_status project(adcgs_raster *r, const adcgs_primitives *primitives,
         return adcgs_fail(error, primitives->n % 64 ? ADCGS_ERR_USAGE : ADCGS_ERR_LIMIT,
                           "rendering: %u slots of primitives, expected a multiple of 64 up to 2^28", primitives->n);
     r->n_slots = primitives->n;
-    ADCGS_TRY(grow(r, &r->projected, r->n_slots, sizeof(adcgs_splat2d), error));
-    ADCGS_TRY(grow(r, &r->outlines, r->n_slots, sizeof(adcgs_outline), error));
-    ADCGS_TRY(grow(r, &r->areas, r->n_slots, sizeof(uint32_t), error));
-    ADCGS_TRY(grow(r, &r->keys, r->n_slots, sizeof(uint64_t), error));
-    ADCGS_TRY(grow(r, &r->other, r->n_slots, sizeof(uint64_t), error));
-    ADCGS_TRY(grow(r, &r->where, r->n_slots, sizeof(uint32_t), error));
-    ADCGS_TRY(grow(r, &r->piece_counts, pieces, sizeof(uint32_t), error));
+    ADCGS_TRY(grow_room(r, &r->projected, r->n_slots, sizeof(adcgs_splat2d), error));
+    ADCGS_TRY(grow_room(r, &r->outlines, r->n_slots, sizeof(adcgs_outline), error));
+    ADCGS_TRY(grow_room(r, &r->areas, r->n_slots, sizeof(uint32_t), error));
+    ADCGS_TRY(grow_room(r, &r->keys, r->n_slots, sizeof(uint64_t), error));
+    ADCGS_TRY(grow_room(r, &r->other, r->n_slots, sizeof(uint64_t), error));
+    ADCGS_TRY(grow_room(r, &r->where, r->n_slots, sizeof(uint32_t), error));
+    ADCGS_TRY(grow_room(r, &r->piece_counts, pieces, sizeof(uint32_t), error));
     r->project = (adcgs_project_job){.primitives = primitives,
                                      .view = view,
                                      .filter = filter,
@@ -168,9 +168,9 @@ static adcgs_status cut_pieces(adcgs_raster *r, adcgs_error *error)
     size_t pieces = threads > 1 ? 4 * (size_t)threads : 1;
     pieces = ADCGS_MIN(pieces, COUNTERS_MAX / (size_t)r->tiles);
     pieces = ADCGS_MAX(pieces, 1);
-    ADCGS_TRY(grow(r, &r->pieces, pieces, sizeof(bin_piece), error));
-    ADCGS_TRY(grow(r, &r->counts, pieces * (size_t)r->tiles, sizeof(uint32_t), error));
-    ADCGS_TRY(grow(r, &r->emitted, total + pieces * ADCGS_BIN_SLACK, sizeof(uint64_t), error));
+    ADCGS_TRY(grow_room(r, &r->pieces, pieces, sizeof(bin_piece), error));
+    ADCGS_TRY(grow_room(r, &r->counts, pieces * (size_t)r->tiles, sizeof(uint32_t), error));
+    ADCGS_TRY(grow_room(r, &r->emitted, total + pieces * ADCGS_BIN_SLACK, sizeof(uint64_t), error));
     bin_piece *p = r->pieces.data;
     uint64_t sum = 0;
     uint32_t i = 0;
@@ -241,9 +241,9 @@ static void scatter_piece(void *arg, int index, int thread)
 static adcgs_status bin(adcgs_raster *r, adcgs_error *error)
 {
     r->tiles = r->project.tiles_x * r->project.tiles_y;
-    ADCGS_TRY(grow(r, &r->splats, r->n, sizeof(adcgs_splat2d), error));
-    ADCGS_TRY(grow(r, &r->first, (uint64_t)r->n + 1, sizeof(uint32_t), error));
-    ADCGS_TRY(grow(r, &r->tile_start, (uint64_t)r->tiles + 1, sizeof(uint32_t), error));
+    ADCGS_TRY(grow_room(r, &r->splats, r->n, sizeof(adcgs_splat2d), error));
+    ADCGS_TRY(grow_room(r, &r->first, (uint64_t)r->n + 1, sizeof(uint32_t), error));
+    ADCGS_TRY(grow_room(r, &r->tile_start, (uint64_t)r->tiles + 1, sizeof(uint32_t), error));
     ADCGS_TRY(cut_pieces(r, error));
     r->bin = (adcgs_bin_job){.order = r->bin.order,
                              .from = r->projected.data,
@@ -254,9 +254,9 @@ static adcgs_status bin(adcgs_raster *r, adcgs_error *error)
                              .where = r->keep ? r->where.data : NULL};
     adcgs_pool_run(r->pool, bin_piece_splats, r, r->n_pieces);
     const uint32_t entries = place_counts(r);
-    ADCGS_TRY(grow(r, &r->entries, entries, sizeof(adcgs_tile_entry), error));
+    ADCGS_TRY(grow_room(r, &r->entries, entries, sizeof(adcgs_tile_entry), error));
     if (r->keep)
-        ADCGS_TRY(grow(r, &r->place, entries, sizeof(uint32_t), error));
+        ADCGS_TRY(grow_room(r, &r->place, entries, sizeof(uint32_t), error));
     r->kept.tile_start = r->tile_start.data;
     adcgs_pool_run(r->pool, scatter_piece, r, r->n_pieces);
     ((uint32_t *)r->first.data)[r->n] = entries;
@@ -274,7 +274,7 @@ static void blend_tile(void *arg, int index, int thread)
 static adcgs_status blend(adcgs_raster *r, const adcgs_view *view, const float background[3], float *rgb, adcgs_error *error)
 {
     if (r->keep)
-        ADCGS_TRY(grow(r, &r->transmittance, (uint64_t)r->tiles * 256, sizeof(float), error));
+        ADCGS_TRY(grow_room(r, &r->transmittance, (uint64_t)r->tiles * 256, sizeof(float), error));
     r->blend = (adcgs_blend_job){.splats = r->splats.data,
                                  .entries = r->entries.data,
                                  .tile_start = r->tile_start.data,

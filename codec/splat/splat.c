@@ -115,7 +115,7 @@ static void load_fg(float *fg, const adcgs_model *m, uint32_t first, int k, cons
 }
 
 /* While finer tiers are absent, larger primitives cover the gaps between the anchors of the first tiers. */
-static void grow(adcgs_anchor_lanes *anchor, const adcgs_model *m)
+static void enlarge_primitives(adcgs_anchor_lanes *anchor, const adcgs_model *m)
 {
     const float factor = adcgs_step_factor(m->absent ? m->growth[m->finest - m->absent] : 0);
     for (int c = 0; c < 3; c++)
@@ -176,7 +176,7 @@ static void canonical_group(void *arg, int index, int thread)
               factor_of(m, &factors, ADCGS_GROUP_COLOUR));
     load_rows(fv, m->fv, p->n_fv, m->d_fv, p->n_fv, first, m->n, NULL);
     s->dsp.anchor(anchor, sigma, p->spans);
-    grow(anchor, m);
+    enlarge_primitives(anchor, m);
     predict_group(s, group, moving, anchor, fv, &factors, fg, buffers);
     if (moving == UINT32_MAX)
         return;
@@ -256,7 +256,7 @@ static adcgs_status alloc_arrays(adcgs_splat *s, adcgs_error *error)
     return !missing ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
-static adcgs_status build(adcgs_splat *s, adcgs_cpu_level cpu, uint32_t *moving_index, adcgs_error *error)
+static adcgs_status build_splat(adcgs_splat *s, adcgs_cpu_level cpu, uint32_t *moving_index, adcgs_error *error)
 {
     ADCGS_TRY(ready_networks(s, cpu, error));
     s->moving = count_moving(s, moving_index);
@@ -300,7 +300,7 @@ adcgs_status adcgs_splat_create(adcgs_splat **out, const adcgs_model *model, adc
     adcgs_dense_dsp_init(&s->dense, level);
     adcgs_splat_dsp_init(&s->dsp, level);
     uint32_t *moving_index = adcgs_alloc(memory, s->groups, sizeof *moving_index, error);
-    const adcgs_status status = moving_index ? build(s, level, moving_index, error) : adcgs_alloc_status(error);
+    const adcgs_status status = moving_index ? build_splat(s, level, moving_index, error) : adcgs_alloc_status(error);
     adcgs_free(memory, moving_index);
     if (status != ADCGS_OK)
         adcgs_splat_free(&s);

@@ -81,7 +81,7 @@ adcgs_status adcgs_source_read(adcgs_source *source, void *buffer, size_t bytes,
     return ADCGS_OK;
 }
 
-static adcgs_status grow(adcgs_source *source, size_t wanted, adcgs_error *error)
+static adcgs_status grow_buffer(adcgs_source *source, size_t wanted, adcgs_error *error)
 {
     if (wanted <= source->capacity)
         return ADCGS_OK;
@@ -126,10 +126,10 @@ static adcgs_status read_payload(adcgs_source *source, adcgs_chunk *chunk, adcgs
 {
     const size_t length = chunk->header.length;
     size_t got = 1;
-    ADCGS_TRY(grow(source, STEP_BYTES, error));
+    ADCGS_TRY(grow_buffer(source, STEP_BYTES, error));
     for (chunk->available = 0; chunk->available < length && got > 0; chunk->available += got) {
         if (chunk->available == source->capacity)
-            ADCGS_TRY(grow(source, ADCGS_MIN(length, 2 * source->capacity), error));
+            ADCGS_TRY(grow_buffer(source, ADCGS_MIN(length, 2 * source->capacity), error));
         const size_t room = ADCGS_MIN(length, source->capacity) - chunk->available;
         ADCGS_TRY(adcgs_source_read(source, source->payload + chunk->available, room, &got, error));
     }

@@ -232,7 +232,7 @@ static adcgs_status pass_on(const adcgs_push_reader *p, adcgs_status status, adc
     return status;
 }
 
-static adcgs_status take(adcgs_push_reader *p, const uint8_t *data, size_t bytes, size_t *used, adcgs_arrival *arrived)
+static adcgs_status take_bytes(adcgs_push_reader *p, const uint8_t *data, size_t bytes, size_t *used, adcgs_arrival *arrived)
 {
     while (*used < bytes && *arrived == ADCGS_ARRIVED_NOTHING && !p->is_over) {
         const size_t n = ADCGS_MIN(bytes - *used, p->wanted - p->n);
@@ -256,7 +256,7 @@ adcgs_status adcgs_push_take(adcgs_push_reader *p, const uint8_t *data, size_t b
     *used = 0;
     *arrived = p->is_over && p->error.status == ADCGS_OK ? ADCGS_ARRIVED_END : ADCGS_ARRIVED_NOTHING;
     if (p->error.status == ADCGS_OK && !p->is_over)
-        p->error.status = take(p, data, bytes, used, arrived);
+        p->error.status = take_bytes(p, data, bytes, used, arrived);
     return pass_on(p, p->error.status, error);
 }
 

@@ -47,7 +47,7 @@ static void blanks(parser *p)
 }
 
 /** Take a sign, if it is next. */
-static int take(parser *p, char sign)
+static int accept_sign(parser *p, char sign)
 {
     blanks(p);
     const int is = *p->at == sign;
@@ -58,7 +58,7 @@ static int take(parser *p, char sign)
 static adcgs_status need(parser *p, char sign)
 {
     const char expected[] = {'\'', sign, '\'', 0};
-    return take(p, sign) ? ADCGS_OK : bad(p, expected);
+    return accept_sign(p, sign) ? ADCGS_OK : bad(p, expected);
 }
 
 /** A word of letters, digits and punctuation of names; "" if there is none. Longer words are truncated. */
@@ -155,7 +155,7 @@ static adcgs_status numbers(parser *p, double out[ADCGS_USDA_NUMBERS], int *n)
         return ADCGS_OK;
     }
     do {
-        while (take(p, '('))
+        while (accept_sign(p, '('))
             depth++;
         char *end;
         blanks(p);
@@ -164,9 +164,9 @@ static adcgs_status numbers(parser *p, double out[ADCGS_USDA_NUMBERS], int *n)
             return bad(p, "numbers, at most 16");
         p->at = end;
         out[(*n)++] = value;
-        while (depth && take(p, ')'))
+        while (depth && accept_sign(p, ')'))
             depth--;
-    } while (depth && take(p, ','));
+    } while (depth && accept_sign(p, ','));
     return depth ? bad(p, "')'") : ADCGS_OK;
 }
 
@@ -198,7 +198,7 @@ static adcgs_status add_sample(parser *p, adcgs_usda_property *to, double at)
 static adcgs_status time_samples(parser *p, adcgs_usda_property *to)
 {
     ADCGS_TRY(need(p, '{'));
-    while (!take(p, '}')) {
+    while (!accept_sign(p, '}')) {
         char *end;
         blanks(p);
         const double at = strtod(p->at, &end);
@@ -207,7 +207,7 @@ static adcgs_status time_samples(parser *p, adcgs_usda_property *to)
         p->at = end;
         ADCGS_TRY(need(p, ':'));
         ADCGS_TRY(add_sample(p, to, at));
-        take(p, ',');
+        accept_sign(p, ',');
     }
     return ADCGS_OK;
 }
@@ -215,9 +215,9 @@ static adcgs_status time_samples(parser *p, adcgs_usda_property *to)
 /** A text, or an array of texts. */
 static adcgs_status texts(parser *p, adcgs_usda_property *to)
 {
-    const int is_array = take(p, '[');
+    const int is_array = accept_sign(p, '[');
     size_t used = 0;
-    while (!is_array || !take(p, ']')) {
+    while (!is_array || !accept_sign(p, ']')) {
         const char *text;
         size_t n;
         ADCGS_TRY(string(p, &text, &n));
@@ -231,7 +231,7 @@ static adcgs_status texts(parser *p, adcgs_usda_property *to)
         more[used] = 0;
         if (!is_array)
             break;
-        take(p, ',');
+        accept_sign(p, ',');
     }
     return ADCGS_OK;
 }
@@ -256,7 +256,7 @@ static adcgs_status value_of(parser *p, int prim, char name[NAME_MAX_BYTES])
     const int is_sampled = suffix && !suffix[12];
     if (is_sampled)
         *suffix = 0;
-    if (take(p, '=')) {
+    if (accept_sign(p, '=')) {
         adcgs_usda_property *const to = p->wanted(name) ? new_property(p, prim, name) : NULL;
         if (!to && p->wanted(name))
             return no_memory(p);
@@ -344,7 +344,7 @@ static adcgs_status body(parser *p, int prim, int depth)
             ADCGS_TRY(skip_prim(p));
         else if (*name)
             ADCGS_TRY(property_of(p, prim, name));
-        else if (!take(p, ';'))
+        else if (!accept_sign(p, ';'))
             return ADCGS_OK;
     }
 }
@@ -354,9 +354,9 @@ static adcgs_status head(parser *p)
 {
     const char *text;
     size_t n;
-    if (!take(p, '('))
+    if (!accept_sign(p, '('))
         return ADCGS_OK;
-    while (!take(p, ')')) {
+    while (!accept_sign(p, ')')) {
         char name[NAME_MAX_BYTES];
         if (at_string(p)) {
             ADCGS_TRY(string(p, &text, &n));
@@ -366,7 +366,7 @@ static adcgs_status head(parser *p)
         if (!*name)
             return bad(p, "a name");
         ADCGS_TRY(value_of(p, -1, name));
-        take(p, ';');
+        accept_sign(p, ';');
     }
     return ADCGS_OK;
 }

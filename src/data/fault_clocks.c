@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 #define CAMERAS 3   /* least number of cameras: of two that differ, either may be wrong */
-#define MOMENTS 12  /* least number of changes in common, at any shift */
+#define CHANGES_MIN 12 /* least number of changes in common, at any shift */
 #define STRONG 4    /* least number of strong changes: a camera may simply have seen a single event later */
 #define REACH 2     /* changes to either side; their median is the smooth part */
 /*
@@ -67,7 +67,7 @@ static int sharpen(double *values, uint32_t n, double *buffer)
         values[i] = deviation > 0.0 ? (buffer[i] - mean) / deviation : (double)NAN;
     for (uint32_t i = 0; i < n; i++)
         strong += fabs(values[i]) >= 0.5;
-    return count >= MOMENTS && strong >= STRONG;
+    return count >= CHANGES_MIN && strong >= STRONG;
 }
 
 /** Correlation of a camera with a mean that it follows by `late` steps; NaN if they have too little in common. */
@@ -87,7 +87,7 @@ static double correlate(const double *a, const double *b, uint32_t n, int late)
         count++;
     }
     const double va = s[2] - s[0] * s[0] / count, vb = s[3] - s[1] * s[1] / count;
-    return count >= MOMENTS && va > 0.0 && vb > 0.0 ? (s[4] - s[0] * s[1] / count) / sqrt(va * vb) : (double)NAN;
+    return count >= CHANGES_MIN && va > 0.0 && vb > 0.0 ? (s[4] - s[0] * s[1] / count) / sqrt(va * vb) : (double)NAN;
 }
 
 /** Mean of all cameras except one or two. */
@@ -113,7 +113,7 @@ static void take_mean(signals *s, uint32_t without, uint32_t and_without)
  */
 static int find_shift(const double *values, const signals *s, double *gain, double *match)
 {
-    const int most = (int)ADCGS_MIN(s->steps - MOMENTS, s->steps / 2);
+    const int most = (int)ADCGS_MIN(s->steps - CHANGES_MIN, s->steps / 2);
     int late = 0;
     double best = correlate(values, s->mean, s->steps, 0), other = -1.0;
     const double now = best;
@@ -173,7 +173,7 @@ static void judge(adcgs_fault *f, signals *s, double *agreed)
 }
 
 /** Index of a view's time in s->times, which holds it to within a thousandth of a step. */
-static uint32_t find_moment(const signals *s, double time)
+static uint32_t find_step(const signals *s, double time)
 {
     uint32_t low = 0, high = s->steps;
     while (low < high) {
@@ -210,8 +210,8 @@ static void take_signals(signals *s, const adcgs_camera_order *tracks, const adc
         for (uint32_t i = 0; i < s->steps; i++)
             values[i] = (double)NAN;
         for (uint32_t i = 1; i < n; i++) {
-            const uint32_t at = find_moment(s, views[order[i]].time);
-            if (at && find_moment(s, views[order[i - 1]].time) == at - 1)
+            const uint32_t at = find_step(s, views[order[i]].time);
+            if (at && find_step(s, views[order[i - 1]].time) == at - 1)
                 values[at - 1] = adcgs_thumbnail_difference(&thumbnails[order[i - 1]], &thumbnails[order[i]]);
         }
         s->first[s->cameras] = &views[order[0]];
@@ -219,8 +219,8 @@ static void take_signals(signals *s, const adcgs_camera_order *tracks, const adc
     }
 }
 
-static adcgs_status look(adcgs_fault *f, signals *s, const adcgs_camera_order *tracks, const adcgs_scene_view *views,
-                         const adcgs_thumbnail *thumbnails, adcgs_error *error)
+static adcgs_status compare_clocks(adcgs_fault *f, signals *s, const adcgs_camera_order *tracks, const adcgs_scene_view *views,
+                                   const adcgs_thumbnail *thumbnails, adcgs_error *error)
 {
     double *const agreed = adcgs_alloc(NULL, tracks->n, sizeof *agreed, error);
     s->values = adcgs_alloc(NULL, (size_t)tracks->n * s->steps, sizeof *s->values, error);
@@ -250,8 +250,8 @@ adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene_view *view
     adcgs_status status = s.times ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK)
         take_times(&s, views, n);
-    if (status == ADCGS_OK && s.steps >= MOMENTS)
-        status = look(fault, &s, tracks, views, thumbnails, error);
+    if (status == ADCGS_OK && s.steps >= CHANGES_MIN)
+        status = compare_clocks(fault, &s, tracks, views, thumbnails, error);
     adcgs_free(NULL, s.times);
     return status;
 }

@@ -15,15 +15,15 @@
 #define FEW 3        /* least number of images of a camera; fewer are not judged */
 
 /** A view in the order of time. */
-typedef struct shot {
+typedef struct capture {
     double time;
     uint32_t view, camera;
     uint32_t near[2]; /* the camera's previous and next view; for its first and last view, the only neighbour twice */
-} shot;
+} capture;
 
 static int by_time(const void *a, const void *b)
 {
-    const shot *const x = a, *const y = b;
+    const capture *const x = a, *const y = b;
     if (x->time < y->time || x->time > y->time)
         return x->time < y->time ? -1 : 1;
     return x->view < y->view ? -1 : x->view > y->view;
@@ -46,7 +46,7 @@ static double contrast(const adcgs_thumbnail *thumbnail)
 }
 
 /** True if b is a copy of a. The comparisons are written so that unknown values (NaN) yield false. */
-static int is_copy(const adcgs_thumbnail *thumbnails, const shot *a, const shot *b)
+static int is_copy(const adcgs_thumbnail *thumbnails, const capture *a, const capture *b)
 {
     const adcgs_thumbnail *const it = &thumbnails[b->view];
     const double off = fmin(adcgs_thumbnail_difference(it, &thumbnails[b->near[0]]),
@@ -61,33 +61,33 @@ static int is_copy(const adcgs_thumbnail *thumbnails, const shot *a, const shot 
 }
 
 /** Lists the views of cameras with enough images, and returns their number. */
-static uint32_t take_shots(shot *shots, adcgs_fault *f, const adcgs_scene_view *views, const adcgs_camera_order *tracks)
+static uint32_t list_captures(capture *captures, adcgs_fault *f, const adcgs_scene_view *views, const adcgs_camera_order *tracks)
 {
     uint32_t count = 0;
     for (uint32_t c = 0; c < tracks->n; c++) {
         const uint32_t *const order = tracks->order + tracks->begin[c], n = tracks->begin[c + 1] - tracks->begin[c];
         f->of += n >= FEW;
         for (uint32_t i = 0; n >= FEW && i < n; i++)
-            shots[count++] = (shot){.time = views[order[i]].time, .view = order[i], .camera = c,
-                                    .near = {order[i ? i - 1 : 1], order[i + 1 < n ? i + 1 : n - 2]}};
+            captures[count++] = (capture){.time = views[order[i]].time, .view = order[i], .camera = c,
+                                          .near = {order[i ? i - 1 : 1], order[i + 1 < n ? i + 1 : n - 2]}};
     }
-    qsort(shots, count, sizeof *shots, by_time);
+    qsort(captures, count, sizeof *captures, by_time);
     return count;
 }
 
 /** counts: [cameras], zero on entry. */
-static void look(adcgs_fault *f, const adcgs_scene_view *views, const shot *shots, uint32_t n, const adcgs_thumbnail *thumbnails,
-                 uint32_t *counts)
+static void find_copies(adcgs_fault *f, const adcgs_scene_view *views, const capture *captures, uint32_t n,
+                        const adcgs_thumbnail *thumbnails, uint32_t *counts)
 {
     for (uint32_t i = 1; i < n; i++) {
-        if (shots[i].camera == shots[i - 1].camera || !is_copy(thumbnails, &shots[i - 1], &shots[i]))
+        if (captures[i].camera == captures[i - 1].camera || !is_copy(thumbnails, &captures[i - 1], &captures[i]))
             continue;
         if (!f->size++) {
-            f->path = views[shots[i].view].path;
-            f->from = f->to = shots[i].time;
+            f->path = views[captures[i].view].path;
+            f->from = f->to = captures[i].time;
         }
-        f->cameras += !counts[shots[i].camera]++;
-        f->count = ADCGS_MAX(f->count, counts[shots[i].camera]);
+        f->cameras += !counts[captures[i].camera]++;
+        f->count = ADCGS_MAX(f->count, counts[captures[i].camera]);
     }
 }
 
@@ -97,12 +97,12 @@ adcgs_status adcgs_fault_copied(adcgs_fault *fault, const adcgs_scene_view *view
     *fault = (adcgs_fault){.cameras = 0};
     if (tracks->n < 2)
         return ADCGS_OK;
-    shot *const shots = adcgs_alloc(NULL, tracks->begin[tracks->n], sizeof *shots, error);
+    capture *const captures = adcgs_alloc(NULL, tracks->begin[tracks->n], sizeof *captures, error);
     uint32_t *const counts = adcgs_alloc(NULL, tracks->n, sizeof *counts, error);
-    const adcgs_status status = shots && counts ? ADCGS_OK : adcgs_alloc_status(error);
+    const adcgs_status status = captures && counts ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK)
-        look(fault, views, shots, take_shots(shots, fault, views, tracks), thumbnails, counts);
-    adcgs_free(NULL, shots);
+        find_copies(fault, views, captures, list_captures(captures, fault, views, tracks), thumbnails, counts);
+    adcgs_free(NULL, captures);
     adcgs_free(NULL, counts);
     return status;
 }

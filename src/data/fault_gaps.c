@@ -97,8 +97,8 @@ static void look_at_cameras(adcgs_fault *f, const adcgs_scene_view *views, const
  * Looks for gaps of all cameras together. Where cameras take turns, the scene's step is shorter than a camera's step. With
  * unsynchronised clocks the scene's steps have any length, but none exceeds a camera's steps.
  */
-static void look_at_moments(adcgs_fault *f, const adcgs_scene_view *views, uint32_t n, uint32_t cameras, space *s,
-                            double least_step)
+static void check_times(adcgs_fault *f, const adcgs_scene_view *views, uint32_t n, uint32_t cameras, space *s,
+                        double least_step)
 {
     uint32_t count, at = 0;
     double median;
@@ -144,7 +144,7 @@ static adcgs_status gather(const adcgs_scene *scene, adcgs_scene_view *views, ui
     return ADCGS_OK;
 }
 
-static adcgs_status look(adcgs_fault *f, const adcgs_scene *scene, adcgs_scene_view *views, space *s, adcgs_error *error)
+static adcgs_status find_gaps(adcgs_fault *f, const adcgs_scene *scene, adcgs_scene_view *views, space *s, adcgs_error *error)
 {
     adcgs_camera_order tracks;
     uint32_t n;
@@ -153,7 +153,7 @@ static adcgs_status look(adcgs_fault *f, const adcgs_scene *scene, adcgs_scene_v
     ADCGS_TRY(adcgs_camera_order_find(&tracks, views, n, error));
     look_at_cameras(f, views, &tracks, s, &least_step);
     if (tracks.n > 1)
-        look_at_moments(f, views, n, tracks.n, s, least_step);
+        check_times(f, views, n, tracks.n, s, least_step);
     adcgs_camera_order_clear(&tracks);
     return ADCGS_OK;
 }
@@ -168,7 +168,7 @@ adcgs_status adcgs_fault_gaps(adcgs_fault *fault, const adcgs_scene *scene, adcg
                .aside = adcgs_alloc(NULL, most, sizeof *s.aside, error)};
     *fault = (adcgs_fault){.cameras = 0};
     const int has_room = views && s.times && s.steps && s.aside;
-    const adcgs_status status = has_room ? look(fault, scene, views, &s, error) : adcgs_alloc_status(error);
+    const adcgs_status status = has_room ? find_gaps(fault, scene, views, &s, error) : adcgs_alloc_status(error);
     adcgs_free(NULL, views);
     adcgs_free(NULL, s.times);
     adcgs_free(NULL, s.steps);

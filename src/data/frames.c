@@ -72,30 +72,30 @@ static size_t drop_repeated(double *values, size_t n)
 }
 
 /** The distinct times of the views of the first `splits` splits, ascending, from malloc(). */
-static double *find_moments(const adcgs_scene *scene, int splits, size_t *n)
+static double *find_times(const adcgs_scene *scene, int splits, size_t *n)
 {
     size_t all = 0;
     for (int s = 0; s < splits; s++)
         all += scene->n_views[s];
-    double *moments = malloc((all + 1) * sizeof *moments);
-    if (!moments)
+    double *times = malloc((all + 1) * sizeof *times);
+    if (!times)
         return NULL;
     all = 0;
     for (int s = 0; s < splits; s++)
         for (uint32_t i = 0; i < scene->n_views[s]; i++)
-            moments[all++] = scene->views[s][i].time;
-    adcgs_sort(moments, all);
-    *n = drop_repeated(moments, all);
-    return moments;
+            times[all++] = scene->views[s][i].time;
+    adcgs_sort(times, all);
+    *n = drop_repeated(times, all);
+    return times;
 }
 
 /** Index of a time among the distinct times. */
-static int64_t find_moment(const double *moments, size_t n, double time)
+static int64_t find_time(const double *times, size_t n, double time)
 {
     size_t low = 0, high = n;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
-        if (moments[middle] <= time)
+        if (times[middle] <= time)
             low = middle;
         else
             high = middle;
@@ -103,21 +103,21 @@ static int64_t find_moment(const double *moments, size_t n, double time)
     return (int64_t)low;
 }
 
-static void keep_views(adcgs_scene *scene, int split, const adcgs_frame_range *range, int64_t count, const double *moments,
+static void keep_views(adcgs_scene *scene, int split, const adcgs_frame_range *range, int64_t count, const double *times,
                        size_t n)
 {
     const int64_t step = adcgs_frames_step(range), last = range->begin + (count - 1) * step;
-    const double first = moments[range->begin], span = moments[last] - first;
+    const double first = times[range->begin], span = times[last] - first;
     adcgs_scene_view *views = scene->views[split];
     uint32_t kept = 0;
     for (uint32_t i = 0; i < scene->n_views[split]; i++) {
-        const int64_t at = find_moment(moments, n, views[i].time);
+        const int64_t at = find_time(times, n, views[i].time);
         if (at < range->begin || at > last || (at - range->begin) % step) {
             adcgs_scene_view_clear(&views[i]);
             continue;
         }
         views[kept] = views[i];
-        views[kept++].time = span > 0.0 ? (moments[at] - first) / span : 0.0;
+        views[kept++].time = span > 0.0 ? (times[at] - first) / span : 0.0;
     }
     scene->n_views[split] = kept;
 }
@@ -128,15 +128,15 @@ adcgs_status adcgs_frames_keep(adcgs_scene *scene, const adcgs_frame_range *rang
     int64_t count;
     if (!range->begin && !range->end && adcgs_frames_step(range) == 1)
         return ADCGS_OK;
-    double *moments = find_moments(scene, ADCGS_SPLITS, &n);
-    if (!moments)
+    double *times = find_times(scene, ADCGS_SPLITS, &n);
+    if (!times)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     const adcgs_status status = adcgs_frames_count(range, (int64_t)n, &count, path, error);
     for (int s = 0; status == ADCGS_OK && s < ADCGS_SPLITS; s++)
-        keep_views(scene, s, range, count, moments, n);
+        keep_views(scene, s, range, count, times, n);
     if (status == ADCGS_OK)
-        scene->intervals *= moments[range->begin + (count - 1) * adcgs_frames_step(range)] - moments[range->begin];
-    free(moments);
+        scene->intervals *= times[range->begin + (count - 1) * adcgs_frames_step(range)] - times[range->begin];
+    free(times);
     ADCGS_TRY(status);
     if (!scene->n_views[ADCGS_SPLIT_TRAIN])
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: --frames leaves no view for training", path);
@@ -146,20 +146,20 @@ adcgs_status adcgs_frames_keep(adcgs_scene *scene, const adcgs_frame_range *rang
 /* ---- Number of intervals ---- */
 
 /** True if all times are multiples of 1/intervals, to within the precision of files with six digits. */
-static int is_grid(const double *moments, size_t n, double intervals)
+static int is_grid(const double *times, size_t n, double intervals)
 {
     const double within = fmin(ADCGS_TIME_TOLERANCE * intervals, GRID_WITHIN);
     for (size_t i = 0; i < n; i++)
-        if (!(fabs(moments[i] * intervals - rint(moments[i] * intervals)) <= within))
+        if (!(fabs(times[i] * intervals - rint(times[i] * intervals)) <= within))
             return 0;
     return 1;
 }
 
 /** The coarsest grid of which the times fill at least half; 0 if there is none. */
-static double find_grid(const double *moments, size_t n)
+static double find_grid(const double *times, size_t n)
 {
     for (size_t intervals = n - 1; intervals && intervals <= 2 * (n - 1); intervals++)
-        if (is_grid(moments, n, (double)intervals))
+        if (is_grid(times, n, (double)intervals))
             return (double)intervals;
     return 0.0;
 }
@@ -168,7 +168,7 @@ adcgs_status adcgs_frames_intervals(const adcgs_scene *scene, uint32_t *n_times,
                                     adcgs_error *error)
 {
     size_t n_all = 0, n = 0;
-    double *all = find_moments(scene, ADCGS_SPLITS, &n_all), *train = find_moments(scene, ADCGS_SPLIT_TRAIN + 1, &n);
+    double *all = find_times(scene, ADCGS_SPLITS, &n_all), *train = find_times(scene, ADCGS_SPLIT_TRAIN + 1, &n);
     const adcgs_status status = all && train ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (status == ADCGS_OK) {
         const double own = find_grid(train, n), common = n > 1 ? find_grid(all, n_all) : 0.0;

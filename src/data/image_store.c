@@ -174,7 +174,7 @@ typedef struct load_job {
     int stop;            /**< likewise */
 } load_job;
 
-static adcgs_status load(adcgs_image_store *p, uint32_t view, adcgs_error *error)
+static adcgs_status load_view(adcgs_image_store *p, uint32_t view, adcgs_error *error)
 {
     float *rgb;
     ADCGS_TRY(adcgs_scene_load(p->scene, &p->scene->views[p->config.split][view], p->config.divide, &rgb, &p->list[view].camera,
@@ -204,7 +204,7 @@ static void load_run(void *arg, int run, int thread)
     int on = 1;
     for (uint32_t i = job->runs.begin[run]; on && i < job->runs.begin[run + 1]; i++) {
         adcgs_error *error = &job->errors[job->runs.order[i]];
-        error->status = load(job->pictures, job->runs.order[i], error);
+        error->status = load_view(job->pictures, job->runs.order[i], error);
         on = tell(job, error->status);
     }
 }

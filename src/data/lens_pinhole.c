@@ -155,7 +155,7 @@ static void shrink(const search *s, area *a)
 }
 
 /** Moves sides outwards, by large steps and then by small ones, until none can move. */
-static void grow(const search *s, double step, area *a)
+static void widen_area(const search *s, double step, area *a)
 {
     for (; step >= 1.0; step = floor(0.5 * step))
         for (int side = 0, stuck = 0; stuck < 4; side = (side + 1) % 4) {
@@ -181,7 +181,7 @@ static adcgs_status find_area(search *s, area *a, const char *path, adcgs_error 
     if (search_raster(s, step, a)) {
         shrink(s, a);
         if (!is_empty(a))
-            grow(s, step, a);
+            widen_area(s, step, a);
     }
     const double width = a->side[2] - a->side[0], height = a->side[3] - a->side[1];
     if (is_empty(a) || width * height * LEAST_SHARE < (double)l->width * l->height)

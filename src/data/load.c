@@ -96,7 +96,7 @@ static inline int is_seen(const adcgs_image *mask, size_t pixel)
 }
 
 /** Sets colour and weight of a pixel; true if the pixel counts. */
-static inline int take(const source *s, size_t pixel, float value[4])
+static inline int read_pixel(const source *s, size_t pixel, float value[4])
 {
     const float *from = s->image->data + pixel * (size_t)s->image->channels;
     value[3] = 1.0f;
@@ -116,7 +116,7 @@ static void average_box(const source *s, int x, int y, int divide, float out[4])
     float sum[4] = {0.0f, 0.0f, 0.0f, 0.0f}, value[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     for (int v = y; v < bottom; v++)
         for (int u = x; u < right; u++) {
-            if (!take(s, (size_t)v * (size_t)s->image->width + (size_t)u, value))
+            if (!read_pixel(s, (size_t)v * (size_t)s->image->width + (size_t)u, value))
                 continue;
             for (int c = 0; c < 3; c++)
                 sum[c] += value[3] * value[c];

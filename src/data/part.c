@@ -9,43 +9,43 @@
 #include <stdlib.h>
 
 /** Lists the n distinct times of the training views, ascending. */
-static adcgs_status list_moments(double **out, uint32_t *n, const adcgs_scene *scene, adcgs_error *error)
+static adcgs_status list_times(double **out, uint32_t *n, const adcgs_scene *scene, adcgs_error *error)
 {
     const uint32_t views = scene->n_views[ADCGS_SPLIT_TRAIN];
-    double *moment = adcgs_alloc(NULL, views, sizeof *moment, error);
-    *out = moment;
+    double *times = adcgs_alloc(NULL, views, sizeof *times, error);
+    *out = times;
     *n = 0;
-    if (!moment)
+    if (!times)
         return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < views; i++)
-        moment[i] = fmin(fmax(scene->views[ADCGS_SPLIT_TRAIN][i].time, 0), scene->duration);
-    adcgs_sort(moment, views);
+        times[i] = fmin(fmax(scene->views[ADCGS_SPLIT_TRAIN][i].time, 0), scene->duration);
+    adcgs_sort(times, views);
     for (uint32_t i = 0; i < views; i++)
-        if (!i || moment[i] - moment[*n - 1] > ADCGS_TIME_TOLERANCE * scene->duration)
-            moment[(*n)++] = moment[i];
+        if (!i || times[i] - times[*n - 1] > ADCGS_TIME_TOLERANCE * scene->duration)
+            times[(*n)++] = times[i];
     return ADCGS_OK;
 }
 
 /** Index of the list's time nearest to a given time. */
-static uint32_t nearest(const double *moment, uint32_t n, double time)
+static uint32_t nearest(const double *times, uint32_t n, double time)
 {
     uint32_t best = 0;
     for (uint32_t i = 1; i < n; i++)
-        if (fabs(moment[i] - time) < fabs(moment[best] - time))
+        if (fabs(times[i] - time) < fabs(times[best] - time))
             best = i;
     return best;
 }
 
-static void cut(adcgs_cuts *cuts, const double *moment, uint32_t n, double duration, double seconds)
+static void cut(adcgs_cuts *cuts, const double *times, uint32_t n, double duration, double seconds)
 {
     uint32_t last = 0;
     cuts->at[0] = 0;
     cuts->moments = n;
     for (double time = seconds; time + seconds / 2 <= duration; time += seconds) {
-        const uint32_t i = nearest(moment, n, time);
+        const uint32_t i = nearest(times, n, time);
         if (i <= last || i + 1 >= n)
             continue;
-        cuts->at[++cuts->n] = moment[i];
+        cuts->at[++cuts->n] = times[i];
         cuts->moments = ADCGS_MIN(cuts->moments, i - last + 1);
         last = i;
     }
@@ -54,23 +54,23 @@ static void cut(adcgs_cuts *cuts, const double *moment, uint32_t n, double durat
 }
 
 /** Extends parts past their ends, up to the last frame within the limits. */
-static void reach_out(adcgs_cuts *cuts, const double *moment, uint32_t n, double duration, double fade)
+static void reach_out(adcgs_cuts *cuts, const double *times, uint32_t n, double duration, double fade)
 {
     uint32_t next = 0;
     for (uint32_t i = 0; i + 1 < cuts->n; i++) {
         const double *at = cuts->at + i, shorter = fmin(at[1] - at[0], at[2] - at[1]);
         const double until = at[1] + fmin(fade, shorter / 4) + ADCGS_TIME_TOLERANCE * duration;
-        while (next < n && moment[next] <= until)
+        while (next < n && times[next] <= until)
             next++;
-        cuts->reach[i] = moment[next - 1] - at[1]; /* next > 0, since the cut itself is a frame */
+        cuts->reach[i] = times[next - 1] - at[1]; /* next > 0, since the cut itself is a frame */
     }
 }
 
 adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double seconds, double fade, adcgs_error *error)
 {
-    double *moment;
+    double *times;
     uint32_t n;
-    adcgs_status status = list_moments(&moment, &n, scene, error);
+    adcgs_status status = list_times(&times, &n, scene, error);
     if (status == ADCGS_OK && n < 2)
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: only one distinct time: there is nothing to cut", scene->directory);
     if (status == ADCGS_OK) {
@@ -79,10 +79,10 @@ adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double 
         status = cuts->at && cuts->reach ? ADCGS_OK : adcgs_alloc_status(error);
     }
     if (status == ADCGS_OK) {
-        cut(cuts, moment, n, scene->duration, fmax(seconds, scene->duration / n));
-        reach_out(cuts, moment, n, scene->duration, fade);
+        cut(cuts, times, n, scene->duration, fmax(seconds, scene->duration / n));
+        reach_out(cuts, times, n, scene->duration, fade);
     }
-    adcgs_free(NULL, moment);
+    adcgs_free(NULL, times);
     return status;
 }
 
@@ -113,7 +113,7 @@ adcgs_status adcgs_scene_part(adcgs_scene *part, const adcgs_scene *whole, const
                               adcgs_error *error)
 {
     const double begin = cuts->at[index], end = cuts->at[index + 1] + (cuts->reach ? cuts->reach[index] : 0);
-    double *moment;
+    double *times;
     *part = *whole;
     part->whole = whole;
     part->duration = end - begin;
@@ -123,8 +123,8 @@ adcgs_status adcgs_scene_part(adcgs_scene *part, const adcgs_scene *whole, const
     if (!part->views[ADCGS_SPLIT_TRAIN])
         return adcgs_alloc_status(error);
     take_views(part, whole, begin, end);
-    const adcgs_status status = list_moments(&moment, &part->n_times, part, error);
-    adcgs_free(NULL, moment);
+    const adcgs_status status = list_times(&times, &part->n_times, part, error);
+    adcgs_free(NULL, times);
     if (status != ADCGS_OK)
         adcgs_scene_part_clear(part);
     return status;
@@ -166,11 +166,11 @@ void adcgs_scene_part_free(adcgs_scene **part)
 
 adcgs_status adcgs_scene_part_count_times(adcgs_scene *part, adcgs_error *error)
 {
-    double *moment;
+    double *times;
     part->n_times = 0;
     if (!part->n_views[ADCGS_SPLIT_TRAIN])
         return ADCGS_OK;
-    const adcgs_status status = list_moments(&moment, &part->n_times, part, error);
-    adcgs_free(NULL, moment);
+    const adcgs_status status = list_times(&times, &part->n_times, part, error);
+    adcgs_free(NULL, times);
     return status;
 }

@@ -23,7 +23,7 @@ void adcgs_splat_scene_free(adcgs_splat_scene **splats)
 }
 
 /** Computes colours for a camera's viewing directions: [3][slots]. */
-static void look(float *colours, size_t slots, const adcgs_splat_scene *s, const adcgs_camera *camera)
+static void evaluate_colours(float *colours, size_t slots, const adcgs_splat_scene *s, const adcgs_camera *camera)
 {
     const adcgs_splats *splats = &s->splats;
     const size_t n = (size_t)(splats->degree + 1) * (size_t)(splats->degree + 1) - 1;
@@ -104,7 +104,7 @@ static adcgs_status draw(float *rgb, const adcgs_splat_scene *s, const float bac
     ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &cpu, error)); /* the image does not depend on it */
     ADCGS_TRY(adcgs_view_init(&view, camera, s->centre, s->radius, error));
     if (w->colours)
-        look(w->colours, w->slots, s, camera);
+        evaluate_colours(w->colours, w->slots, s, camera);
     for (size_t c = 0; c < 3 && w->colours; c++)
         primitives.colour[c] = w->colours + c * w->slots;
     if (w->opacities) {

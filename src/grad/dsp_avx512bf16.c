@@ -32,7 +32,7 @@ typedef struct sums {
     uint64_t *below;
 } sums;
 
-static inline __mmask16 first(int n)
+static inline __mmask16 first_lanes(int n)
 {
     return (__mmask16)(n >= VN ? 0xffff : n > 0 ? (1 << n) - 1 : 0);
 }
@@ -70,7 +70,7 @@ INLINE void store_sums(int cols, const sums *s, int r, const __m512 acc[COLS], _
 
 INLINE void product_tile(int rows, int cols, const sums *s, const uint32_t *a, size_t lda, const columns *b, int pairs)
 {
-    const __mmask16 last = first(s->n - (cols - 1) * VN);
+    const __mmask16 last = first_lanes(s->n - (cols - 1) * VN);
     __m512 acc[ROWS][COLS];
 #pragma GCC unroll 6
     for (int r = 0; r < rows; r++)
@@ -154,8 +154,8 @@ static inline void pack_row(uint32_t *to, const float *from, int n)
     for (; i + 2 * VN <= n; i += 2 * VN)
         _mm512_store_si512(to + i / 2, pair_up(_mm512_loadu_ps(from + i), _mm512_loadu_ps(from + i + VN)));
     if (i < n)
-        _mm512_store_si512(to + i / 2, pair_up(_mm512_maskz_loadu_ps(first(n - i), from + i),
-                                               _mm512_maskz_loadu_ps(first(n - i - VN), from + i + VN)));
+        _mm512_store_si512(to + i / 2, pair_up(_mm512_maskz_loadu_ps(first_lanes(n - i), from + i),
+                                               _mm512_maskz_loadu_ps(first_lanes(n - i - VN), from + i + VN)));
 }
 
 /** Pairs of consecutive rows of 64 lanes. */

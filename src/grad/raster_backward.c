@@ -64,7 +64,7 @@ static void project_piece(void *arg, int index, int thread)
         b->dsp.project(&b->job, slot);
 }
 
-static adcgs_status grow(adcgs_raster_back *b, size_t entries, adcgs_error *error)
+static adcgs_status grow_entries(adcgs_raster_back *b, size_t entries, adcgs_error *error)
 {
     if (entries <= b->entries)
         return ADCGS_OK;
@@ -86,7 +86,7 @@ adcgs_status adcgs_raster_backward(adcgs_raster_back *b, const adcgs_raster *ras
     if (!kept.where || kept.n_slots != primitives->n)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "backward: the last forward pass kept no data for %u slots", primitives->n);
     const int tiles = kept.tiles_x * kept.tiles_y;
-    ADCGS_TRY(grow(b, kept.tile_start[tiles], error));
+    ADCGS_TRY(grow_entries(b, kept.tile_start[tiles], error));
     b->job = (adcgs_back_job){.kept = kept,
                               .primitives = primitives,
                               .view = view,

@@ -76,32 +76,32 @@ static int by_name(const void *name, const void *image)
     return strcmp(name, ((const adcgs_colmap_image *)image)->name);
 }
 
-/** The image of a shot; NULL if it has no pose. */
-static const adcgs_colmap_image *find_image(const adcgs_poses *poses, const adcgs_source_images *shots,
-                                            const adcgs_source_image *shot)
+/** COLMAP's image of a source image; NULL if it has no pose. */
+static const adcgs_colmap_image *find_image(const adcgs_poses *poses, const adcgs_source_images *sources,
+                                            const adcgs_source_image *source)
 {
     char name[2 * ADCGS_SOURCE_IMAGE_NAME + 16];
-    snprintf(name, sizeof name, "%s/%s.%s", shots->cameras[shot->camera].folder, shot->stem, shot->end);
+    snprintf(name, sizeof name, "%s/%s.%s", sources->cameras[source->camera].folder, source->stem, source->end);
     return poses->model.n_images ? bsearch(name, poses->model.images, poses->model.n_images, sizeof *poses->model.images, by_name)
                                  : NULL;
 }
 
-static adcgs_status add_posed(adcgs_poses *poses, const adcgs_import_job *job, uint32_t shot, const adcgs_colmap_image *image)
+static adcgs_status add_posed(adcgs_poses *poses, const adcgs_import_job *job, uint32_t source, const adcgs_colmap_image *image)
 {
     const adcgs_colmap_camera *camera = adcgs_colmap_find_camera(&poses->model, image->camera_id);
     if (!camera)
         return adcgs_fail(job->error, ADCGS_ERR_DATA, "%s/sparse: %.100s: there is no camera %u", job->folder, image->name,
                           image->camera_id);
     adcgs_posed *p = &poses->posed[poses->n++];
-    *p = (adcgs_posed){.shot = shot, .lens = &camera->lens};
+    *p = (adcgs_posed){.source = source, .lens = &camera->lens};
     memcpy(p->cam_to_world, image->cam_to_world, sizeof p->cam_to_world);
     return ADCGS_OK;
 }
 
 static adcgs_status list_moving(adcgs_poses *poses, const adcgs_import_job *job)
 {
-    for (uint32_t i = 0; i < job->shots.n; i++) {
-        const adcgs_colmap_image *image = find_image(poses, &job->shots, &job->shots.shots[i]);
+    for (uint32_t i = 0; i < job->sources.n; i++) {
+        const adcgs_colmap_image *image = find_image(poses, &job->sources, &job->sources.list[i]);
         if (image)
             ADCGS_TRY(add_posed(poses, job, i, image));
     }
@@ -143,10 +143,11 @@ static void take_mean(const mean_pose *mean, double pose[12])
 /** Lists a fixed camera, with one pose for all its images. */
 static adcgs_status list_standing(adcgs_poses *poses, const adcgs_import_job *job, uint32_t camera)
 {
-    const adcgs_source_images *shots = &job->shots;
+    const adcgs_source_images *sources = &job->sources;
     mean_pose mean = {.n = 0};
-    for (uint32_t i = 0; i < shots->n; i++) {
-        const adcgs_colmap_image *image = shots->shots[i].camera == camera ? find_image(poses, shots, &shots->shots[i]) : NULL;
+    for (uint32_t i = 0; i < sources->n; i++) {
+        const adcgs_colmap_image *image = sources->list[i].camera == camera ? find_image(poses, sources,
+                                                                                         &sources->list[i]) : NULL;
         if (!image)
             continue;
         if (!mean.n)
@@ -168,12 +169,12 @@ static double square_distance(const double a[12], const double b[12])
 /** Root mean square distance of the images' own poses from their cameras' poses. */
 static double find_spread(const adcgs_poses *poses, const adcgs_import_job *job)
 {
-    const adcgs_source_images *shots = &job->shots;
+    const adcgs_source_images *sources = &job->sources;
     double squares = 0.0;
     for (uint32_t p = 0; p < poses->n; p++)
-        for (uint32_t i = 0; i < shots->n; i++) {
-            const int is_own = shots->shots[i].camera == shots->shots[poses->posed[p].shot].camera;
-            const adcgs_colmap_image *image = is_own ? find_image(poses, shots, &shots->shots[i]) : NULL;
+        for (uint32_t i = 0; i < sources->n; i++) {
+            const int is_own = sources->list[i].camera == sources->list[poses->posed[p].source].camera;
+            const adcgs_colmap_image *image = is_own ? find_image(poses, sources, &sources->list[i]) : NULL;
             if (image)
                 squares += square_distance(image->cam_to_world, poses->posed[p].cam_to_world);
         }
@@ -194,9 +195,9 @@ static double find_extent(const adcgs_poses *poses)
 
 static adcgs_status list_rig(adcgs_poses *poses, const adcgs_import_job *job)
 {
-    for (uint32_t c = 0; c < job->shots.n_cameras; c++)
+    for (uint32_t c = 0; c < job->sources.n_cameras; c++)
         ADCGS_TRY(list_standing(poses, job, c));
-    job->report->cameras = job->shots.n_cameras;
+    job->report->cameras = job->sources.n_cameras;
     job->report->found = poses->n;
     const double extent = poses->n ? find_extent(poses) : 0.0;
     job->report->spread = extent > 0.0 ? find_spread(poses, job) / extent : 0.0;
@@ -205,15 +206,15 @@ static adcgs_status list_rig(adcgs_poses *poses, const adcgs_import_job *job)
 
 static adcgs_status list_posed(adcgs_poses *poses, const adcgs_import_job *job)
 {
-    const int stands = job->shots.kind == ADCGS_FOOTAGE_RIG;
+    const int stands = job->sources.kind == ADCGS_FOOTAGE_RIG;
     const uint32_t least = stands ? STANDING_LEAST : POSED_LEAST;
-    if (!(poses->posed = calloc((size_t)job->shots.n + 1, sizeof *poses->posed)))
+    if (!(poses->posed = calloc((size_t)job->sources.n + 1, sizeof *poses->posed)))
         return no_memory(job);
     ADCGS_TRY(stands ? list_rig(poses, job) : list_moving(poses, job));
     if (poses->n < least)
         return adcgs_fail(job->error, ADCGS_ERR_DATA, "COLMAP found where %u of %u %s were, expected at least %u; check that "
                           "they show the same objects from different positions. Its output is in %s", poses->n,
-                          stands ? job->shots.n_cameras : job->shots.n, stands ? "cameras" : "images", least, job->log);
+                          stands ? job->sources.n_cameras : job->sources.n, stands ? "cameras" : "images", least, job->log);
     const uint32_t every = (uint32_t)job->options->test_every;
     for (uint32_t i = 0; every && i < poses->n; i++)
         poses->posed[i].is_test = i % every == every / 2; /* usually neither the first nor the last: between others */
@@ -231,11 +232,11 @@ static int by_id(const void *a, const void *b)
 /** Adds the images of a training view to the list of training images. */
 static void add_training(adcgs_poses *poses, const adcgs_import_job *job, const adcgs_posed *posed)
 {
-    const adcgs_source_images *shots = &job->shots;
-    const int stands = shots->kind == ADCGS_FOOTAGE_RIG;
-    for (uint32_t i = 0; i < shots->n; i++) {
-        const int is_own = stands ? shots->shots[i].camera == shots->shots[posed->shot].camera : i == posed->shot;
-        const adcgs_colmap_image *image = is_own ? find_image(poses, shots, &shots->shots[i]) : NULL;
+    const adcgs_source_images *sources = &job->sources;
+    const int stands = sources->kind == ADCGS_FOOTAGE_RIG;
+    for (uint32_t i = 0; i < sources->n; i++) {
+        const int is_own = stands ? sources->list[i].camera == sources->list[posed->source].camera : i == posed->source;
+        const adcgs_colmap_image *image = is_own ? find_image(poses, sources, &sources->list[i]) : NULL;
         if (image)
             poses->model.training[poses->model.n_training++] = image->id;
     }

@@ -8,7 +8,7 @@
 
 /** A camera of the scene: an image of a moving camera, or a fixed camera. */
 typedef struct adcgs_posed {
-    uint32_t shot;           /**< the image; for a fixed camera, its first image with a pose */
+    uint32_t source;         /**< the image; for a fixed camera, its first image with a pose */
     const adcgs_lens *lens;  /**< the model's, for images as given to COLMAP */
     double cam_to_world[12]; /**< OpenCV axes */
     int is_test;
@@ -16,7 +16,7 @@ typedef struct adcgs_posed {
 
 typedef struct adcgs_poses {
     adcgs_colmap model;      /**< its points are the scene's initial points */
-    adcgs_posed *posed;      /**< in the order of the shots, or of the fixed cameras */
+    adcgs_posed *posed;      /**< in the order of the source images, or of the fixed cameras */
     uint32_t n;
 } adcgs_poses;
 

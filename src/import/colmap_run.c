@@ -62,7 +62,7 @@ static int hear(void *user, const char *line)
         const int n = atoi(open + 1);
         const char *slash = strchr(open, '/');
         adcgs_progress_show(job->progress, "%-9s %6d/%d", s->name, n,
-                            *open == '[' && slash ? atoi(slash + 1) : (int)job->shots.n);
+                            *open == '[' && slash ? atoi(slash + 1) : (int)job->sources.n);
     }
     if (strstr(line, "ERROR") || strstr(line, "rror:") || strstr(line, "Failed"))
         snprintf(s->last, sizeof s->last, "%.199s", line);
@@ -134,7 +134,7 @@ typedef struct places {
 
 static adcgs_status extract(adcgs_import_job *job, const adcgs_colmap_program *program, const places *p)
 {
-    const double known = job->shots.cameras[0].focal;
+    const double known = job->sources.cameras[0].focal;
     const double said = known > 0.0 ? known : job->options->lens == ADCGS_IMPORT_FISHEYE ? FISHEYE_FOCAL : 0.0;
     char threads[16], focal[32];
     step s = begin(job, program, "feature_extractor", "features", "Processed file");
@@ -158,7 +158,7 @@ static adcgs_status extract(adcgs_import_job *job, const adcgs_colmap_program *p
 static adcgs_status match(adcgs_import_job *job, const adcgs_colmap_program *program, const places *p)
 {
     char threads[16];
-    const int follows = job->shots.kind == ADCGS_FOOTAGE_FILM && job->shots.n > EXHAUSTIVE_MOST;
+    const int follows = job->sources.kind == ADCGS_FOOTAGE_FILM && job->sources.n > EXHAUSTIVE_MOST;
     step s = begin(job, program, follows ? "sequential_matcher" : "exhaustive_matcher", "matching", "Matching");
     add_option(&s, "--database_path", p->database);
     if (follows)

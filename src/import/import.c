@@ -71,15 +71,15 @@ static adcgs_status write_stamp(const adcgs_import_job *job, char **text, size_t
     if (!out)
         return no_memory(job);
     fprintf(out, "adcgs-import %s %d %d %d %d %d %u/%u\n", PACKAGE_VERSION, o->side, o->frames, o->lens, o->own_lens,
-            (int)job->shots.kind, o->fps.num, o->fps.den);
+            (int)job->sources.kind, o->fps.num, o->fps.den);
     if (o->masks)
         stamp_file(out, o->masks);
-    for (uint32_t i = 0; i < job->shots.n_cameras; i++)
-        if (job->shots.cameras[i].video)
-            stamp_file(out, job->shots.cameras[i].video);
-    for (uint32_t i = 0; i < job->shots.n; i++)
-        if (job->shots.shots[i].path)
-            stamp_file(out, job->shots.shots[i].path);
+    for (uint32_t i = 0; i < job->sources.n_cameras; i++)
+        if (job->sources.cameras[i].video)
+            stamp_file(out, job->sources.cameras[i].video);
+    for (uint32_t i = 0; i < job->sources.n; i++)
+        if (job->sources.list[i].path)
+            stamp_file(out, job->sources.list[i].path);
     return fclose(out) ? no_memory(job) : ADCGS_OK;
 }
 
@@ -140,10 +140,10 @@ static adcgs_status remove_stamp(const adcgs_import_job *job)
 static adcgs_status finish(const adcgs_import_job *job)
 {
     static const char *const scaffolding[] = {"sparse", "database.db", "database.db-shm", "database.db-wal", "colmap.log"};
-    if (job->shots.kind == ADCGS_FOOTAGE_RIG)
+    if (job->sources.kind == ADCGS_FOOTAGE_RIG)
         ADCGS_TRY(remove_below(job, "images"));
-    for (uint32_t i = 0; job->shots.kind == ADCGS_FOOTAGE_RIG && job->options->masks && i < job->shots.n_cameras; i++) {
-        char *name = adcgs_path("masks/%s", job->shots.cameras[i].folder);
+    for (uint32_t i = 0; job->sources.kind == ADCGS_FOOTAGE_RIG && job->options->masks && i < job->sources.n_cameras; i++) {
+        char *name = adcgs_path("masks/%s", job->sources.cameras[i].folder);
         const adcgs_status status = name ? remove_below(job, name) : no_memory(job);
         free(name);
         ADCGS_TRY(status);
@@ -160,15 +160,15 @@ static adcgs_status finish(const adcgs_import_job *job)
 
 static void report_footage(const adcgs_import_job *job)
 {
-    const adcgs_source_images *shots = &job->shots;
+    const adcgs_source_images *sources = &job->sources;
     adcgs_import_report *r = job->report;
-    const adcgs_source_image_camera *first = &shots->cameras[0];
-    r->kind = kinds[shots->kind];
-    r->pictures = shots->n;
-    r->is_numbered = shots->is_numbered && shots->kind == ADCGS_FOOTAGE_PICTURES;
-    for (uint32_t i = 0; i < shots->n; i++)
-        r->seconds = fmax(r->seconds, shots->shots[i].time);
-    if (shots->kind == ADCGS_FOOTAGE_RIG)
+    const adcgs_source_image_camera *first = &sources->cameras[0];
+    r->kind = kinds[sources->kind];
+    r->pictures = sources->n;
+    r->is_numbered = sources->is_numbered && sources->kind == ADCGS_FOOTAGE_PICTURES;
+    for (uint32_t i = 0; i < sources->n; i++)
+        r->seconds = fmax(r->seconds, sources->list[i].time);
+    if (sources->kind == ADCGS_FOOTAGE_RIG)
         r->seconds = (double)(first->frames - 1) / adcgs_fps_value(first->rate);
 }
 
@@ -179,7 +179,7 @@ static adcgs_status make_scene(adcgs_import_job *job, const adcgs_colmap_program
     ADCGS_TRY(adcgs_import_pictures(job));
     ADCGS_TRY(adcgs_import_poses(job, program));
     ADCGS_TRY(adcgs_poses_read(&poses, job));
-    adcgs_status status = job->shots.kind == ADCGS_FOOTAGE_RIG ? adcgs_import_videos(job) : ADCGS_OK;
+    adcgs_status status = job->sources.kind == ADCGS_FOOTAGE_RIG ? adcgs_import_videos(job) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = adcgs_import_write(&poses, job);
     adcgs_poses_clear(&poses);
@@ -193,7 +193,7 @@ static adcgs_status run(adcgs_import_job *job)
     if (adcgs_is_there(o->output))
         return adcgs_fail(job->error, ADCGS_ERR_USAGE, "%s: exists already", o->output);
     ADCGS_TRY(adcgs_import_ask(&program, o, job->error));
-    ADCGS_TRY(adcgs_source_images_list(&job->shots, o, job->progress, job->error));
+    ADCGS_TRY(adcgs_source_images_list(&job->sources, o, job->progress, job->error));
     report_footage(job);
     if (!(job->folder = adcgs_path("%s" UNFINISHED, o->output)) || !(job->log = adcgs_path("%s/colmap.log", job->folder)))
         return no_memory(job);
@@ -206,7 +206,7 @@ adcgs_status adcgs_import(const adcgs_import_options *options, adcgs_progress *p
     adcgs_import_job job = {.options = options, .progress = progress, .report = report, .error = error};
     *report = (adcgs_import_report){.kind = ""};
     const adcgs_status status = run(&job);
-    adcgs_source_images_clear(&job.shots);
+    adcgs_source_images_clear(&job.sources);
     free(job.folder);
     free(job.log);
     return status;

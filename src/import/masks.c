@@ -28,10 +28,10 @@ static adcgs_status find(const adcgs_import_job *job, const char *name, int leng
  * Finds an image's mask: by the image's file name with or without its extension, by the name of the image in the scene, or else
  * by its camera's name.
  */
-static adcgs_status find_mask(const adcgs_import_job *job, const adcgs_source_image *shot, char **out)
+static adcgs_status find_mask(const adcgs_import_job *job, const adcgs_source_image *source, char **out)
 {
-    const char *slash = shot->path ? strrchr(shot->path, '/') : NULL, *file = slash ? slash + 1 : shot->path;
-    const char *const camera = job->shots.cameras[shot->camera].name;
+    const char *slash = source->path ? strrchr(source->path, '/') : NULL, *file = slash ? slash + 1 : source->path;
+    const char *const camera = job->sources.cameras[source->camera].name;
     *out = NULL;
     if (file) {
         const char *dot = strrchr(file, '.');
@@ -43,16 +43,16 @@ static adcgs_status find_mask(const adcgs_import_job *job, const adcgs_source_im
             free(whole);
     }
     if (!*out)
-        ADCGS_TRY(find(job, shot->stem, (int)strlen(shot->stem), out));
+        ADCGS_TRY(find(job, source->stem, (int)strlen(source->stem), out));
     return *out ? ADCGS_OK : find(job, camera, (int)strlen(camera), out);
 }
 
 /** Checks that the mask has the aspect ratio of the image before rotation. */
-static adcgs_status check_shape(const adcgs_import_job *job, const adcgs_source_image *shot, const char *path,
+static adcgs_status check_shape(const adcgs_import_job *job, const adcgs_source_image *source, const char *path,
                                 const adcgs_image *mask)
 {
-    const int lies = adcgs_photo_lies(shot->turn);
-    const int width = lies ? shot->height : shot->width, height = lies ? shot->width : shot->height;
+    const int lies = adcgs_photo_lies(source->turn);
+    const int width = lies ? source->height : source->width, height = lies ? source->width : source->height;
     const double ratio = (double)mask->width * height / ((double)mask->height * width);
     return fabs(ratio - 1.0) <= SHAPE_TOLERANCE
                ? ADCGS_OK
@@ -75,16 +75,16 @@ static void make_plain(adcgs_image *mask, float threshold)
     mask->channels = 1;
 }
 
-static adcgs_status make_mask(const adcgs_import_job *job, const adcgs_source_image *shot, const char *from, const char *to)
+static adcgs_status make_mask(const adcgs_import_job *job, const adcgs_source_image *source, const char *from, const char *to)
 {
     adcgs_image mask;
     ADCGS_TRY(adcgs_image_read(&mask, from, job->error));
-    adcgs_status status = check_shape(job, shot, from, &mask);
+    adcgs_status status = check_shape(job, source, from, &mask);
     if (status == ADCGS_OK)
         status = adcgs_mask_settle(&mask, from, job->error);
     make_plain(&mask, 0.0f);
     if (status == ADCGS_OK)
-        status = adcgs_photo_shape(&mask, shot->turn, shot->width, shot->height, from, job->error);
+        status = adcgs_photo_shape(&mask, source->turn, source->width, source->height, from, job->error);
     make_plain(&mask, 0.5f);
     if (status == ADCGS_OK)
         status = adcgs_image_write(&mask, to, 0, job->error);
@@ -92,17 +92,18 @@ static adcgs_status make_mask(const adcgs_import_job *job, const adcgs_source_im
     return status;
 }
 
-adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_source_image *shot)
+adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_source_image *source)
 {
     char *from;
-    ADCGS_TRY(find_mask(job, shot, &from));
+    ADCGS_TRY(find_mask(job, source, &from));
     if (!from)
         return ADCGS_OK;
     job->has_masks = 1;
-    char *to = adcgs_path("%s/masks/%s/%s.%s.png", job->folder, job->shots.cameras[shot->camera].folder, shot->stem, shot->end);
+    char *to = adcgs_path("%s/masks/%s/%s.%s.png", job->folder, job->sources.cameras[source->camera].folder, source->stem,
+                          source->end);
     adcgs_status status = !to                  ? adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", from)
                           : adcgs_is_there(to) ? ADCGS_OK
-                                               : make_mask(job, shot, from, to);
+                                               : make_mask(job, source, from, to);
     free(to);
     free(from);
     return status;
@@ -110,7 +111,7 @@ adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_source_image *
 
 adcgs_status adcgs_import_camera_mask(adcgs_import_job *job, uint32_t camera)
 {
-    const char *const name = job->shots.cameras[camera].name;
+    const char *const name = job->sources.cameras[camera].name;
     adcgs_image mask;
     char *from;
     ADCGS_TRY(find(job, name, (int)strlen(name), &from));

@@ -53,70 +53,70 @@ static adcgs_status copy_file(const char *from, const char *to, adcgs_error *err
     return status;
 }
 
-static adcgs_status write_shaped(adcgs_import_job *job, const adcgs_source_image *shot, adcgs_image *image, const char *from,
+static adcgs_status write_shaped(adcgs_import_job *job, const adcgs_source_image *source, adcgs_image *image, const char *from,
                                  const char *to)
 {
-    ADCGS_TRY(adcgs_photo_shape(image, shot->turn, shot->width, shot->height, from, job->error));
+    ADCGS_TRY(adcgs_photo_shape(image, source->turn, source->width, source->height, from, job->error));
     return adcgs_image_write(image, to, 0, job->error);
 }
 
 /** Makes an image from a file. */
-static adcgs_status make_picture(adcgs_import_job *job, const adcgs_source_image *shot, const char *to)
+static adcgs_status make_picture(adcgs_import_job *job, const adcgs_source_image *source, const char *to)
 {
     adcgs_image image;
-    if (shot->as_is)
-        return copy_file(shot->path, to, job->error);
-    ADCGS_TRY(adcgs_image_read(&image, shot->path, job->error));
-    const adcgs_status status = write_shaped(job, shot, &image, shot->path, to);
+    if (source->as_is)
+        return copy_file(source->path, to, job->error);
+    ADCGS_TRY(adcgs_image_read(&image, source->path, job->error));
+    const adcgs_status status = write_shaped(job, source, &image, source->path, to);
     adcgs_image_free(&image);
     return status;
 }
 
 /** Makes an image from a frame of an open video. */
-static adcgs_status make_frame(adcgs_import_job *job, const adcgs_source_image *shot, adcgs_video *video, const char *to)
+static adcgs_status make_frame(adcgs_import_job *job, const adcgs_source_image *source, adcgs_video *video, const char *to)
 {
     adcgs_image image;
-    ADCGS_TRY(adcgs_video_read(video, shot->frame, &image, job->error));
-    const adcgs_status status = write_shaped(job, shot, &image, job->shots.cameras[shot->camera].video, to);
+    ADCGS_TRY(adcgs_video_read(video, source->frame, &image, job->error));
+    const adcgs_status status = write_shaped(job, source, &image, job->sources.cameras[source->camera].video, to);
     adcgs_image_free(&image);
     return status;
 }
 
 /* ---- All images of a camera ---- */
 
-static adcgs_status make_shot(adcgs_import_job *job, adcgs_source_image *shot, adcgs_video *video)
+static adcgs_status make_image(adcgs_import_job *job, adcgs_source_image *source, adcgs_video *video)
 {
     char *images, *to = NULL;
     ADCGS_TRY(adcgs_import_goes_on(job));
     ADCGS_TRY(adcgs_import_path(&images, job, "images"));
-    adcgs_status status = (to = adcgs_source_image_path(&job->shots, shot, images))
+    adcgs_status status = (to = adcgs_source_image_path(&job->sources, source, images))
                               ? ADCGS_OK : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", images);
     free(images);
     if (status == ADCGS_OK && video) {
-        shot->width = adcgs_video_get_info(video)->width;
-        shot->height = adcgs_video_get_info(video)->height;
-        adcgs_source_image_fit(&shot->width, &shot->height, job->options->side);
+        source->width = adcgs_video_get_info(video)->width;
+        source->height = adcgs_video_get_info(video)->height;
+        adcgs_source_image_fit(&source->width, &source->height, job->options->side);
     }
     if (status == ADCGS_OK && !adcgs_is_there(to))
-        status = video ? make_frame(job, shot, video, to) : make_picture(job, shot, to);
+        status = video ? make_frame(job, source, video, to) : make_picture(job, source, to);
     if (status == ADCGS_OK && job->options->masks)
-        status = adcgs_import_mask(job, shot);
+        status = adcgs_import_mask(job, source);
     free(to);
     return status;
 }
 
 /** Makes the images of one camera, in the order of its video's frames. */
-static adcgs_status make_shots(adcgs_import_job *job, uint32_t camera, uint32_t *done)
+static adcgs_status make_images(adcgs_import_job *job, uint32_t camera, uint32_t *done)
 {
-    adcgs_source_images *shots = &job->shots;
+    adcgs_source_images *sources = &job->sources;
     adcgs_video *video = NULL;
     adcgs_status status =
-        shots->cameras[camera].video ? adcgs_video_open(&video, shots->cameras[camera].video, job->error) : ADCGS_OK;
-    for (uint32_t i = 0; status == ADCGS_OK && i < shots->n; i++) {
-        if (shots->shots[i].camera != camera)
+        sources->cameras[camera].video ? adcgs_video_open(&video, sources->cameras[camera].video, job->error) : ADCGS_OK;
+    for (uint32_t i = 0; status == ADCGS_OK && i < sources->n; i++) {
+        if (sources->list[i].camera != camera)
             continue;
-        status = make_shot(job, &shots->shots[i], video);
-        adcgs_progress_show(job->progress, "images    %6u/%u", ++*done, shots->n);
+        status = make_image(job, &sources->list[i], video);
+        adcgs_progress_show(job->progress, "images    %6u/%u", ++*done, sources->n);
     }
     adcgs_video_close(&video);
     return status;
@@ -124,7 +124,7 @@ static adcgs_status make_shots(adcgs_import_job *job, uint32_t camera, uint32_t 
 
 static adcgs_status make_camera_folder(const adcgs_import_job *job, const char *parent, uint32_t camera)
 {
-    char *name = adcgs_path("%s/%s", parent, job->shots.cameras[camera].folder);
+    char *name = adcgs_path("%s/%s", parent, job->sources.cameras[camera].folder);
     const adcgs_status status = name ? adcgs_import_make_folder(job, name)
                                      : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", parent);
     free(name);
@@ -137,17 +137,17 @@ adcgs_status adcgs_import_pictures(adcgs_import_job *job)
     ADCGS_TRY(adcgs_import_make_folder(job, "images"));
     if (job->options->masks)
         ADCGS_TRY(adcgs_import_make_folder(job, "masks"));
-    for (uint32_t c = 0; c < job->shots.n_cameras; c++) {
+    for (uint32_t c = 0; c < job->sources.n_cameras; c++) {
         ADCGS_TRY(make_camera_folder(job, "images", c));
         if (job->options->masks)
             ADCGS_TRY(make_camera_folder(job, "masks", c));
-        ADCGS_TRY(make_shots(job, c, &done));
+        ADCGS_TRY(make_images(job, c, &done));
     }
     if (job->options->masks && !job->has_masks)
         return adcgs_fail(job->error, ADCGS_ERR_DATA, "%s: no mask there has the name of an image or of a camera, such as "
-                          "%s.png or %s.png", job->options->masks, job->shots.shots[0].stem, job->shots.cameras[0].name);
-    job->report->width = job->shots.shots[0].width;
-    job->report->height = job->shots.shots[0].height;
+                          "%s.png or %s.png", job->options->masks, job->sources.list[0].stem, job->sources.cameras[0].name);
+    job->report->width = job->sources.list[0].width;
+    job->report->height = job->sources.list[0].height;
     return ADCGS_OK;
 }
 
@@ -177,8 +177,8 @@ static adcgs_status copy_video(const adcgs_import_job *job, const char *from, co
 adcgs_status adcgs_import_videos(adcgs_import_job *job)
 {
     ADCGS_TRY(adcgs_import_make_folder(job, "videos"));
-    for (uint32_t i = 0; i < job->shots.n_cameras; i++) {
-        const adcgs_source_image_camera *camera = &job->shots.cameras[i];
+    for (uint32_t i = 0; i < job->sources.n_cameras; i++) {
+        const adcgs_source_image_camera *camera = &job->sources.cameras[i];
         char *to = adcgs_path("%s/videos/%s.%s", job->folder, camera->name, adcgs_extension(camera->video));
         adcgs_status status = !to                  ? adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", job->folder)
                               : adcgs_is_there(to) ? ADCGS_OK
@@ -187,7 +187,7 @@ adcgs_status adcgs_import_videos(adcgs_import_job *job)
         ADCGS_TRY(status);
         if (job->options->masks)
             ADCGS_TRY(adcgs_import_camera_mask(job, i));
-        adcgs_progress_show(job->progress, "videos    %6u/%u", i + 1, job->shots.n_cameras);
+        adcgs_progress_show(job->progress, "videos    %6u/%u", i + 1, job->sources.n_cameras);
     }
     return ADCGS_OK;
 }

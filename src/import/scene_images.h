@@ -7,7 +7,7 @@
 
 typedef struct adcgs_import_job {
     const adcgs_import_options *options;
-    adcgs_source_images shots;
+    adcgs_source_images sources;
     char *folder;      /**< folder of the unfinished scene */
     char *log;         /**< path of COLMAP's log */
     int has_masks;     /**< at least one image has a mask */
@@ -27,8 +27,8 @@ adcgs_status adcgs_import_make_folder(const adcgs_import_job *job, const char *n
 adcgs_status adcgs_import_goes_on(const adcgs_import_job *job);
 
 /**
- * Makes images/FOLDER/STEM.END for all shots, and masks/FOLDER/STEM.END.png, in COLMAP's convention, for shots with a mask.
- * Files that exist from an earlier run are kept.
+ * Makes images/FOLDER/STEM.END for all source images, and masks/FOLDER/STEM.END.png, in COLMAP's convention, for source
+ * images with a mask. Files that exist from an earlier run are kept.
  */
 adcgs_status adcgs_import_pictures(adcgs_import_job *job);
 /** Copies the videos of a rig to videos/, and their masks to masks/CAMERA.png. */
@@ -36,8 +36,8 @@ adcgs_status adcgs_import_videos(adcgs_import_job *job);
 
 /* ---- Shared: masks.c ---- */
 
-/** Makes the mask of a shot, if there is one, to fit its image. */
-adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_source_image *shot);
+/** Makes the mask of a source image, if there is one, to fit its image. */
+adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_source_image *source);
 /** Copies the mask that applies to a camera's whole footage without resizing it, if there is one. */
 adcgs_status adcgs_import_camera_mask(adcgs_import_job *job, uint32_t camera);
 

@@ -63,22 +63,23 @@ static adcgs_status write_file(adcgs_json *json, const char *field, const adcgs_
 
 static adcgs_status write_footage(adcgs_json *json, const adcgs_import_job *job, const adcgs_posed *posed)
 {
-    const adcgs_source_image *shot = &job->shots.shots[posed->shot];
-    const adcgs_source_image_camera *camera = &job->shots.cameras[shot->camera];
-    if (job->shots.kind == ADCGS_FOOTAGE_RIG) {
+    const adcgs_source_image *source = &job->sources.list[posed->source];
+    const adcgs_source_image_camera *camera = &job->sources.cameras[source->camera];
+    if (job->sources.kind == ADCGS_FOOTAGE_RIG) {
         ADCGS_TRY(write_file(json, "video", job, adcgs_path("videos/%s.%s", camera->name, adcgs_extension(camera->video))));
         return write_file(json, "masks", job, adcgs_path("masks/%s.png", camera->name));
     }
-    ADCGS_TRY(write_file(json, "images", job, adcgs_path("images/%s/%s.%s", camera->folder, shot->stem, shot->end)));
-    write_number(json, "time_offset", shot->time);
-    return write_file(json, "masks", job, adcgs_path("masks/%s/%s.%s.png", camera->folder, shot->stem, shot->end));
+    ADCGS_TRY(write_file(json, "images", job, adcgs_path("images/%s/%s.%s", camera->folder, source->stem, source->end)));
+    write_number(json, "time_offset", source->time);
+    return write_file(json, "masks", job, adcgs_path("masks/%s/%s.%s.png", camera->folder, source->stem, source->end));
 }
 
 static adcgs_status write_camera(adcgs_json *json, const adcgs_import_job *job, const adcgs_posed *posed)
 {
-    const adcgs_source_image *shot = &job->shots.shots[posed->shot];
+    const adcgs_source_image *source = &job->sources.list[posed->source];
     adcgs_json_open(json, NULL, '{');
-    adcgs_json_string(json, "name", job->shots.kind == ADCGS_FOOTAGE_RIG ? job->shots.cameras[shot->camera].name : shot->stem);
+    adcgs_json_string(json, "name",
+                      job->sources.kind == ADCGS_FOOTAGE_RIG ? job->sources.cameras[source->camera].name : source->stem);
     ADCGS_TRY(write_footage(json, job, posed));
     if (posed->is_test)
         adcgs_json_string(json, "split", "test");
@@ -93,8 +94,8 @@ static adcgs_status fill(adcgs_json *json, const adcgs_poses *poses, const adcgs
     char rate[32];
     adcgs_json_open(json, NULL, '{');
     adcgs_json_int(json, "adcgs_scene", 1);
-    if (job->shots.rate.den) {
-        snprintf(rate, sizeof rate, "%u/%u", job->shots.rate.num, job->shots.rate.den);
+    if (job->sources.rate.den) {
+        snprintf(rate, sizeof rate, "%u/%u", job->sources.rate.num, job->sources.rate.den);
         adcgs_json_string(json, "frame_rate", rate);
     }
     adcgs_json_string(json, "up", "z");

@@ -12,20 +12,20 @@
 
 #define SHOTS_MAX 10000 /* limit of cameras in a scene file */
 
-void adcgs_source_images_clear(adcgs_source_images *shots)
+void adcgs_source_images_clear(adcgs_source_images *sources)
 {
-    for (uint32_t i = 0; i < shots->n; i++)
-        free(shots->shots[i].path);
-    for (uint32_t i = 0; i < shots->n_cameras; i++)
-        free(shots->cameras[i].video);
-    free(shots->shots);
-    free(shots->cameras);
-    *shots = (adcgs_source_images){0};
+    for (uint32_t i = 0; i < sources->n; i++)
+        free(sources->list[i].path);
+    for (uint32_t i = 0; i < sources->n_cameras; i++)
+        free(sources->cameras[i].video);
+    free(sources->list);
+    free(sources->cameras);
+    *sources = (adcgs_source_images){0};
 }
 
-char *adcgs_source_image_path(const adcgs_source_images *shots, const adcgs_source_image *shot, const char *folder)
+char *adcgs_source_image_path(const adcgs_source_images *sources, const adcgs_source_image *source, const char *folder)
 {
-    return adcgs_path("%s/%s/%s.%s", folder, shots->cameras[shot->camera].folder, shot->stem, shot->end);
+    return adcgs_path("%s/%s/%s.%s", folder, sources->cameras[source->camera].folder, source->stem, source->end);
 }
 
 void adcgs_source_image_fit(int *width, int *height, int side)
@@ -67,7 +67,7 @@ static void make_unique(char name[ADCGS_SOURCE_IMAGE_NAME], const char *names, u
 }
 
 /** Makes room for one more element in an array that grows by doubling; NULL, with a message, on failure. */
-static void *grow(void *array, uint32_t n, size_t element, adcgs_error *error)
+static void *grow_array(void *array, uint32_t n, size_t element, adcgs_error *error)
 {
     if (n >= SHOTS_MAX) {
         adcgs_fail(error, ADCGS_ERR_DATA, "more than %d images: give fewer, or for a video use --frames", SHOTS_MAX);
@@ -79,33 +79,33 @@ static void *grow(void *array, uint32_t n, size_t element, adcgs_error *error)
     return more;
 }
 
-adcgs_source_image *adcgs_source_images_add(adcgs_source_images *shots, uint32_t camera, const char *stem, adcgs_error *error)
+adcgs_source_image *adcgs_source_images_add(adcgs_source_images *sources, uint32_t camera, const char *stem, adcgs_error *error)
 {
-    adcgs_source_image *all = grow(shots->shots, shots->n, sizeof *all, error);
+    adcgs_source_image *all = grow_array(sources->list, sources->n, sizeof *all, error);
     if (!all)
         return NULL;
-    shots->shots = all;
-    adcgs_source_image *shot = &all[shots->n];
-    *shot = (adcgs_source_image){.camera = camera, .turn = ADCGS_PHOTO_UPRIGHT};
-    clean_name(shot->stem, stem);
-    if (shots->kind != ADCGS_FOOTAGE_FILM || !shots->cameras[camera].video) /* frames of one video have numbers */
-        make_unique(shot->stem, all[0].stem, shots->n, sizeof *all);
-    shots->n++;
-    shots->cameras[camera].shots++;
-    return shot;
+    sources->list = all;
+    adcgs_source_image *source = &all[sources->n];
+    *source = (adcgs_source_image){.camera = camera, .turn = ADCGS_PHOTO_UPRIGHT};
+    clean_name(source->stem, stem);
+    if (sources->kind != ADCGS_FOOTAGE_FILM || !sources->cameras[camera].video) /* frames of one video have numbers */
+        make_unique(source->stem, all[0].stem, sources->n, sizeof *all);
+    sources->n++;
+    sources->cameras[camera].images++;
+    return source;
 }
 
-adcgs_source_image_camera *adcgs_source_images_add_camera(adcgs_source_images *shots, const char *name, adcgs_error *error)
+adcgs_source_image_camera *adcgs_source_images_add_camera(adcgs_source_images *sources, const char *name, adcgs_error *error)
 {
-    adcgs_source_image_camera *all = grow(shots->cameras, shots->n_cameras, sizeof *all, error);
+    adcgs_source_image_camera *all = grow_array(sources->cameras, sources->n_cameras, sizeof *all, error);
     if (!all)
         return NULL;
-    shots->cameras = all;
-    adcgs_source_image_camera *camera = &all[shots->n_cameras];
+    sources->cameras = all;
+    adcgs_source_image_camera *camera = &all[sources->n_cameras];
     *camera = (adcgs_source_image_camera){.frames = 0};
     clean_name(camera->name, name);
-    make_unique(camera->name, all[0].name, shots->n_cameras, sizeof *all);
+    make_unique(camera->name, all[0].name, sources->n_cameras, sizeof *all);
     memcpy(camera->folder, camera->name, sizeof camera->folder);
-    shots->n_cameras++;
+    sources->n_cameras++;
     return camera;
 }

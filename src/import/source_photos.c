@@ -15,15 +15,15 @@
 #include <strings.h>
 
 /** Finds the camera of an image by the image's size and its metadata (maker, model and lens). */
-static adcgs_status find_camera(adcgs_source_images *shots, const adcgs_photo *photo, uint32_t *camera, adcgs_error *error)
+static adcgs_status find_camera(adcgs_source_images *sources, const adcgs_photo *photo, uint32_t *camera, adcgs_error *error)
 {
-    char key[sizeof shots->cameras->key], name[ADCGS_SOURCE_IMAGE_NAME];
+    char key[sizeof sources->cameras->key], name[ADCGS_SOURCE_IMAGE_NAME];
     snprintf(key, sizeof key, "%dx%d %d %s", photo->width, photo->height, photo->turn, photo->camera);
-    for (*camera = 0; *camera < shots->n_cameras; ++*camera)
-        if (!strcmp(shots->cameras[*camera].key, key))
+    for (*camera = 0; *camera < sources->n_cameras; ++*camera)
+        if (!strcmp(sources->cameras[*camera].key, key))
             return ADCGS_OK;
-    snprintf(name, sizeof name, "camera%u", shots->n_cameras + 1);
-    adcgs_source_image_camera *added = adcgs_source_images_add_camera(shots, name, error);
+    snprintf(name, sizeof name, "camera%u", sources->n_cameras + 1);
+    adcgs_source_image_camera *added = adcgs_source_images_add_camera(sources, name, error);
     if (!added)
         return error->status;
     memcpy(added->key, key, sizeof key);
@@ -37,30 +37,30 @@ static int ends_like(const char *path, const char *a, const char *b)
     return !strcasecmp(end, a) || !strcasecmp(end, b);
 }
 
-static adcgs_status add_picture(adcgs_source_images *shots, const char *path, const adcgs_import_options *options,
+static adcgs_status add_picture(adcgs_source_images *sources, const char *path, const adcgs_import_options *options,
                                 adcgs_error *error)
 {
     adcgs_photo photo;
     char stem[256];
     uint32_t camera;
     ADCGS_TRY(adcgs_photo_probe(&photo, path, error));
-    ADCGS_TRY(find_camera(shots, &photo, &camera, error));
+    ADCGS_TRY(find_camera(sources, &photo, &camera, error));
     adcgs_stem(stem, sizeof stem, path);
-    adcgs_source_image *shot = adcgs_source_images_add(shots, camera, stem, error);
-    if (!shot)
+    adcgs_source_image *source = adcgs_source_images_add(sources, camera, stem, error);
+    if (!source)
         return error->status;
     const int is_jpeg = ends_like(path, "jpg", "jpeg"), is_png = ends_like(path, "png", "png");
     const int lies = adcgs_photo_lies(photo.turn);
-    shot->turn = photo.turn;
-    shot->width = lies ? photo.height : photo.width;
-    shot->height = lies ? photo.width : photo.height;
-    adcgs_source_image_fit(&shot->width, &shot->height, options->side);
-    shot->as_is = (is_jpeg || is_png) && photo.turn == ADCGS_PHOTO_UPRIGHT && shot->width == photo.width &&
-                  shot->height == photo.height;
-    snprintf(shot->end, sizeof shot->end, "%s", is_jpeg ? "jpg" : "png");
-    shot->time = options->fps.den ? (double)(shots->n - 1) / adcgs_fps_value(options->fps) : 0.0;
-    shot->path = strdup(path);
-    return shot->path ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    source->turn = photo.turn;
+    source->width = lies ? photo.height : photo.width;
+    source->height = lies ? photo.width : photo.height;
+    adcgs_source_image_fit(&source->width, &source->height, options->side);
+    source->as_is = (is_jpeg || is_png) && photo.turn == ADCGS_PHOTO_UPRIGHT && source->width == photo.width &&
+                  source->height == photo.height;
+    snprintf(source->end, sizeof source->end, "%s", is_jpeg ? "jpg" : "png");
+    source->time = options->fps.den ? (double)(sources->n - 1) / adcgs_fps_value(options->fps) : 0.0;
+    source->path = strdup(path);
+    return source->path ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
 }
 
 static int is_heif_name(const char *name)
@@ -112,21 +112,21 @@ static adcgs_status refuse_folder(const char *folder, adcgs_error *error)
     return status == ADCGS_OK ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: no image in this folder", folder) : status;
 }
 
-static adcgs_status add_names(adcgs_source_images *shots, const char *folder, const char *const *names, size_t n,
+static adcgs_status add_names(adcgs_source_images *sources, const char *folder, const char *const *names, size_t n,
                               const adcgs_import_options *options, adcgs_progress *progress, adcgs_error *error)
 {
     for (size_t i = 0; i < n; i++) {
         char *path = adcgs_path("%s/%s", folder, names[i]);
-        const adcgs_status status = path ? add_picture(shots, path, options, error)
+        const adcgs_status status = path ? add_picture(sources, path, options, error)
                                          : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
         free(path);
         ADCGS_TRY(status);
-        adcgs_progress_show(progress, "scanning  %6u images", shots->n);
+        adcgs_progress_show(progress, "scanning  %6u images", sources->n);
     }
     return ADCGS_OK;
 }
 
-static adcgs_status add_folder(adcgs_source_images *shots, const char *folder, const adcgs_import_options *options,
+static adcgs_status add_folder(adcgs_source_images *sources, const char *folder, const adcgs_import_options *options,
                                adcgs_progress *progress, adcgs_error *error)
 {
     adcgs_listing images, heifs = {0};
@@ -138,25 +138,25 @@ static adcgs_status add_folder(adcgs_source_images *shots, const char *folder, c
     if (status == ADCGS_OK && !(names = malloc((images.n + heifs.n) * sizeof *names)))
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
     if (status == ADCGS_OK)
-        status = add_names(shots, folder, names, merge(names, &images, &heifs), options, progress, error);
+        status = add_names(sources, folder, names, merge(names, &images, &heifs), options, progress, error);
     free(names);
     adcgs_listing_free(&images);
     adcgs_listing_free(&heifs);
     return status;
 }
 
-adcgs_status adcgs_source_images_photos(adcgs_source_images *shots, const adcgs_import_options *options, adcgs_progress *progress,
-                                        adcgs_error *error)
+adcgs_status adcgs_source_images_photos(adcgs_source_images *sources, const adcgs_import_options *options,
+                                        adcgs_progress *progress, adcgs_error *error)
 {
-    shots->kind = options->fps.den ? ADCGS_FOOTAGE_FILM : ADCGS_FOOTAGE_PICTURES;
-    shots->rate = options->fps;
+    sources->kind = options->fps.den ? ADCGS_FOOTAGE_FILM : ADCGS_FOOTAGE_PICTURES;
+    sources->rate = options->fps;
     for (int i = 0; i < options->n_inputs; i++)
-        ADCGS_TRY(adcgs_is_folder(options->inputs[i]) ? add_folder(shots, options->inputs[i], options, progress, error)
-                                                      : add_picture(shots, options->inputs[i], options, error));
+        ADCGS_TRY(adcgs_is_folder(options->inputs[i]) ? add_folder(sources, options->inputs[i], options, progress, error)
+                                                      : add_picture(sources, options->inputs[i], options, error));
     adcgs_counting counting = {.n = 0};
-    for (uint32_t i = 0; i < shots->n; i++)
-        adcgs_counting_add(&counting, shots->shots[i].stem);
-    shots->is_numbered = adcgs_counting_holds(&counting);
-    return shots->n >= 3 ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u image%s, expected at least three",
-                                                 options->inputs[0], shots->n, adcgs_s(shots->n));
+    for (uint32_t i = 0; i < sources->n; i++)
+        adcgs_counting_add(&counting, sources->list[i].stem);
+    sources->is_numbered = adcgs_counting_holds(&counting);
+    return sources->n >= 3 ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u image%s, expected at least three",
+                                                   options->inputs[0], sources->n, adcgs_s(sources->n));
 }

@@ -165,7 +165,7 @@ static int stays_untouched(const adcgs_claim *c, const struct stat *before, doub
  * State of a claim's owner. Creates our own file, whose time is that of the file system, except if there is no claim or the
  * system reports the owner dead. So a process that is killed then leaves no file behind.
  */
-static answer look(const adcgs_claim *c, owner *who, double *age)
+static answer read_owner(const adcgs_claim *c, owner *who, double *age)
 {
     char text[TEXT_MAX];
     struct stat theirs, ours;
@@ -275,7 +275,7 @@ static int take_over(const adcgs_claim *c)
     return is_ours(c);
 }
 
-static adcgs_status take(adcgs_claim *c, adcgs_error *error)
+static adcgs_status acquire(adcgs_claim *c, adcgs_error *error)
 {
     owner who = { .process = 0 };
     double age = 0;
@@ -284,7 +284,7 @@ static adcgs_status take(adcgs_claim *c, adcgs_error *error)
             return ADCGS_OK;
         if (errno != EEXIST)
             break;
-        const answer found = look(c, &who, &age);
+        const answer found = read_owner(c, &who, &age);
         if (found == UNKNOWN)
             break;
         if (found == ALIVE)
@@ -301,7 +301,7 @@ adcgs_status adcgs_claim_take(adcgs_claim **claim, const char *path, const char 
     *claim = NULL;
     if (!c)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    adcgs_status status = take(c, error);
+    adcgs_status status = acquire(c, error);
     unlink(c->mine);
     if (status == ADCGS_OK) {
         *claim = c;
@@ -322,7 +322,7 @@ adcgs_status adcgs_claim_absent(const char *path, const char *what, adcgs_error 
     adcgs_claim *const c = make(path, what);
     if (!c)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    const answer found = look(c, &who, &age);
+    const answer found = read_owner(c, &who, &age);
     const adcgs_status status =
         found == ALIVE     ? refuse(c, &who, age, error)
         : found == UNKNOWN ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create: %s", c->mine, strerror(errno))

@@ -199,7 +199,7 @@ static adcgs_status find(adcgs_glb_view *view, const adcgs_glb *g, const adcgs_s
                                             view->count, s->n);
 }
 
-static adcgs_status take(const adcgs_glb *g, adcgs_splats *s, const char *name, int components, put_fn put, int k)
+static adcgs_status read_attribute(const adcgs_glb *g, adcgs_splats *s, const char *name, int components, put_fn put, int k)
 {
     adcgs_glb_view view;
     ADCGS_TRY(find(&view, g, s, name, components));
@@ -243,7 +243,7 @@ static adcgs_status take_harmonics(const adcgs_glb *g, adcgs_splats *s)
         return bad(g, ADCGS_ERR_MEMORY, "out of memory for harmonics");
     for (int degree = 1, k = 0; degree <= s->degree; degree++)
         for (int j = 0; j <= 2 * degree; j++, k++)
-            ADCGS_TRY(take(g, s, harmonic_name(name, degree, j), 3, put_harmonic, k));
+            ADCGS_TRY(read_attribute(g, s, harmonic_name(name, degree, j), 3, put_harmonic, k));
     return ADCGS_OK;
 }
 
@@ -254,11 +254,11 @@ static adcgs_status take_splats(const adcgs_glb *g, adcgs_splats *s)
     ADCGS_TRY(adcgs_glb_find(&view, g, "POSITION", 3));
     ADCGS_TRY(adcgs_splats_alloc(s, view.count, g->path, g->error));
     s->axes = ADCGS_SPLATS_Y_UP;
-    ADCGS_TRY(take(g, s, "POSITION", 3, put_position, 0));
-    ADCGS_TRY(take(g, s, ADCGS_GLB_SPLATS ":ROTATION", 4, put_rotation, 0));
-    ADCGS_TRY(take(g, s, ADCGS_GLB_SPLATS ":SCALE", 3, put_scale, 0));
-    ADCGS_TRY(take(g, s, ADCGS_GLB_SPLATS ":OPACITY", 1, put_opacity, 0));
-    ADCGS_TRY(take(g, s, harmonic_name(name, 0, 0), 3, put_colour, 0));
+    ADCGS_TRY(read_attribute(g, s, "POSITION", 3, put_position, 0));
+    ADCGS_TRY(read_attribute(g, s, ADCGS_GLB_SPLATS ":ROTATION", 4, put_rotation, 0));
+    ADCGS_TRY(read_attribute(g, s, ADCGS_GLB_SPLATS ":SCALE", 3, put_scale, 0));
+    ADCGS_TRY(read_attribute(g, s, ADCGS_GLB_SPLATS ":OPACITY", 1, put_opacity, 0));
+    ADCGS_TRY(read_attribute(g, s, harmonic_name(name, 0, 0), 3, put_colour, 0));
     return take_harmonics(g, s);
 }
 

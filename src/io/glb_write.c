@@ -68,7 +68,7 @@ static void list_one(adcgs_json *json, const char *key, const char *name)
 }
 
 /** "min" and "max" of positions, which glTF requires. */
-static void say_bounds(adcgs_json *json, const adcgs_splats *s)
+static void write_bounds(adcgs_json *json, const adcgs_splats *s)
 {
     for (int side = 0; side < 2; side++) {
         adcgs_json_open(json, side ? "max" : "min", '[');
@@ -83,7 +83,7 @@ static void say_bounds(adcgs_json *json, const adcgs_splats *s)
 }
 
 /** Layout of the numbers: one buffer, a view of it for each attribute, and an accessor for each view. */
-static void say_numbers(adcgs_json *json, const adcgs_splats *s)
+static void write_numbers(adcgs_json *json, const adcgs_splats *s)
 {
     int64_t offset = 0;
     open_one(json, "buffers");
@@ -109,13 +109,13 @@ static void say_numbers(adcgs_json *json, const adcgs_splats *s)
         adcgs_json_int(json, "count", s->n);
         adcgs_json_string(json, "type", attributes[k].type);
         if (k == 0)
-            say_bounds(json, s);
+            write_bounds(json, s);
         adcgs_json_close(json);
     }
     adcgs_json_close(json);
 }
 
-static void say_mesh(adcgs_json *json)
+static void write_mesh(adcgs_json *json)
 {
     open_one(json, "meshes");
     open_one(json, "primitives");
@@ -135,7 +135,7 @@ static void say_mesh(adcgs_json *json)
 }
 
 /** The single node, with a translation if the scene is far from the origin. */
-static void say_node(adcgs_json *json, const adcgs_splats *s)
+static void write_node(adcgs_json *json, const adcgs_splats *s)
 {
     open_one(json, "nodes");
     adcgs_json_int(json, "mesh", 0);
@@ -168,9 +168,9 @@ static adcgs_status write_json(FILE *file, const adcgs_splats *s, const char *ge
     adcgs_json_int(&json, NULL, 0);
     adcgs_json_close(&json);
     close_one(&json);
-    say_node(&json, s);
-    say_mesh(&json);
-    say_numbers(&json, s);
+    write_node(&json, s);
+    write_mesh(&json);
+    write_numbers(&json, s);
     adcgs_json_close(&json);
     return adcgs_json_write(&json, file, path, error);
 }

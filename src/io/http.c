@@ -273,7 +273,7 @@ adcgs_status adcgs_http_explain(const adcgs_http *http, adcgs_status status, adc
 }
 
 /** Memory grows with the bytes that arrive, not with the announced length. */
-static adcgs_status load(adcgs_http *h, uint8_t **data, size_t *bytes, adcgs_http_useful_fn useful, adcgs_error *error)
+static adcgs_status load_resource(adcgs_http *h, uint8_t **data, size_t *bytes, adcgs_http_useful_fn useful, adcgs_error *error)
 {
     size_t room = 0;
     for (int64_t got = 1; got > 0; *bytes += (size_t)got) {
@@ -307,7 +307,7 @@ adcgs_status adcgs_http_load(uint8_t **data, size_t *bytes, const char *url, adc
     *data = NULL;
     *bytes = 0;
     ADCGS_TRY(adcgs_http_open(&h, url, &config, error));
-    const adcgs_status status = load(h, data, bytes, useful, error);
+    const adcgs_status status = load_resource(h, data, bytes, useful, error);
     adcgs_http_close(&h);
     if (status == ADCGS_OK)
         return ADCGS_OK;

@@ -242,7 +242,7 @@ static adcgs_status transfer_ask(adcgs_transfer *t, const char *range, const cha
     return ADCGS_OK;
 }
 
-static adcgs_status take(adcgs_transfer *t, int steps, void *buffer, size_t bytes, size_t *got, adcgs_error *error)
+static adcgs_status receive_bytes(adcgs_transfer *t, int steps, void *buffer, size_t bytes, size_t *got, adcgs_error *error)
 {
     *got = 0;
     if (t->paused && t->next == t->held) {
@@ -258,12 +258,12 @@ static adcgs_status take(adcgs_transfer *t, int steps, void *buffer, size_t byte
 
 static adcgs_status transfer_read(adcgs_transfer *t, void *buffer, size_t bytes, size_t *got, adcgs_error *error)
 {
-    return take(t, INT_MAX, buffer, bytes, got, error);
+    return receive_bytes(t, INT_MAX, buffer, bytes, got, error);
 }
 
 static adcgs_status transfer_take(adcgs_transfer *t, void *buffer, size_t bytes, size_t *got, int *ended, adcgs_error *error)
 {
-    const adcgs_status status = take(t, 1, buffer, bytes, got, error);
+    const adcgs_status status = receive_bytes(t, 1, buffer, bytes, got, error);
     *ended = t->done && t->next == t->held;
     return status;
 }

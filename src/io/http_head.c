@@ -50,7 +50,7 @@ static void keep(char *to, size_t size, const char *value)
         memcpy(to, value, n + 1);
 }
 
-static void take(adcgs_http_head *head, char *line)
+static void parse_line(adcgs_http_head *head, char *line)
 {
     char *value = strchr(line, ':');
     if (!strncmp(line, "HTTP/", 5)) /* another response: headers of a redirect no longer count */
@@ -76,5 +76,5 @@ void adcgs_http_head_line(adcgs_http_head *head, const char *data, size_t n)
         return;
     memcpy(line, data, n);
     line[n] = 0;
-    take(head, line);
+    parse_line(head, line);
 }

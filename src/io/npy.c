@@ -42,7 +42,7 @@ static void skip_blanks(reader *r)
 }
 
 /** Take the next character, after blanks, if it is c. */
-static int take(reader *r, char c)
+static int accept_char(reader *r, char c)
 {
     skip_blanks(r);
     if (r->at == r->end || *r->at != c)
@@ -100,9 +100,9 @@ static adcgs_status read_order(reader *r)
 static adcgs_status read_shape(reader *r)
 {
     const char *expected = "expected a tuple of whole numbers";
-    if (!take(r, '('))
+    if (!accept_char(r, '('))
         return bad(r, "shape", expected);
-    while (!take(r, ')')) {
+    while (!accept_char(r, ')')) {
         uint64_t value = 0;
         const char *first = r->at;
         for (; r->at < r->end && *r->at >= '0' && *r->at <= '9' && value < COUNT_MAX; r->at++)
@@ -111,7 +111,7 @@ static adcgs_status read_shape(reader *r)
             return bad(r, "shape", expected);
         r->shape[r->n_dimensions++] = value;
         skip_blanks(r);
-        if (!take(r, ',') && (r->at == r->end || *r->at != ')'))
+        if (!accept_char(r, ',') && (r->at == r->end || *r->at != ')'))
             return bad(r, "shape", expected);
     }
     return ADCGS_OK;
@@ -131,19 +131,19 @@ static adcgs_status read_item(reader *r)
             if (r->seen & 1 << i)
                 return bad(r, key, "given twice");
             r->seen |= 1 << i;
-            return take(r, ':') ? items[i].read(r) : bad(r, key, "expected a colon");
+            return accept_char(r, ':') ? items[i].read(r) : bad(r, key, "expected a colon");
         }
     return bad(r, key, "unknown key");
 }
 
 static adcgs_status read_dictionary(reader *r)
 {
-    if (!take(r, '{'))
+    if (!accept_char(r, '{'))
         return bad(r, "", "expected a dictionary");
-    while (!take(r, '}')) {
+    while (!accept_char(r, '}')) {
         ADCGS_TRY(read_item(r));
         skip_blanks(r);
-        if (!take(r, ',') && (r->at == r->end || *r->at != '}'))
+        if (!accept_char(r, ',') && (r->at == r->end || *r->at != '}'))
             return bad(r, "", "expected a comma or the end of the dictionary");
     }
     skip_blanks(r);

@@ -122,7 +122,7 @@ static adcgs_status unpack(const archive *a, const entry *e, const uint8_t *pack
 #endif
 }
 
-static adcgs_status take(const archive *a, const char *array, uint8_t **out, size_t *bytes)
+static adcgs_status extract_array(const archive *a, const char *array, uint8_t **out, size_t *bytes)
 {
     const uint8_t *packed = NULL;
     entry e = {.method = STORED};
@@ -153,7 +153,7 @@ adcgs_status adcgs_npz_read(uint8_t **out, size_t *bytes, const char *path, cons
     *out = NULL;
     ADCGS_TRY(adcgs_file_load(&data, &a.bytes, path, FILE_MAX, error));
     a.data = data;
-    const adcgs_status status = take(&a, array, out, bytes);
+    const adcgs_status status = extract_array(&a, array, out, bytes);
     free(data);
     return status;
 }

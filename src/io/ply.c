@@ -169,7 +169,7 @@ static adcgs_status parse_format(adcgs_ply *r, const char *line)
 /* ---- Numbers ---- */
 
 /** The number at r->at as an unsigned integer in host order. */
-static uint64_t load(const adcgs_ply *r, int bytes)
+static uint64_t load_bytes(const adcgs_ply *r, int bytes)
 {
     uint64_t value = 0;
     for (int i = 0; i < bytes; i++)
@@ -218,7 +218,7 @@ static int read_number(adcgs_ply *r, adcgs_ply_type type, double *out)
     const int bytes = scalars[type].bytes;
     if (r->end - r->at < bytes)
         return -1;
-    *out = convert(type, load(r, bytes));
+    *out = convert(type, load_bytes(r, bytes));
     r->at += bytes;
     return 0;
 }

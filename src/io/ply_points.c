@@ -39,7 +39,7 @@ static void find_most(void *user, uint64_t vertex, const adcgs_ply_property *pro
         t->most = value;
 }
 
-static void take(void *user, uint64_t vertex, const adcgs_ply_property *property, double value)
+static void set_property(void *user, uint64_t vertex, const adcgs_ply_property *property, double value)
 {
     const taker *t = user;
     if (property->role <= Z)
@@ -81,7 +81,7 @@ static adcgs_status read_vertices(adcgs_ply *ply, adcgs_points *out)
     adcgs_ply_offset(ply, t.offset);
     adcgs_status status = out->coloured ? adcgs_ply_survey(ply, find_most, &t) : ADCGS_OK;
     if (status == ADCGS_OK)
-        status = adcgs_ply_vertices(ply, take, &t);
+        status = adcgs_ply_vertices(ply, set_property, &t);
     if (status != ADCGS_OK)
         adcgs_points_free(out);
     return status;

@@ -60,7 +60,7 @@ static void mpi_send(int to, const void *message, int bytes)
     pthread_mutex_unlock(&turn);
 }
 
-static int take(int *from, void *message, int bytes)
+static int receive_message(int *from, void *message, int bytes)
 {
     MPI_Status status;
     int is_there = 0, length = 0;
@@ -78,7 +78,7 @@ static int take(int *from, void *message, int bytes)
 static int mpi_take(int *from, void *message, int bytes)
 {
     pthread_mutex_lock(&turn);
-    const int taken = take(from, message, bytes);
+    const int taken = receive_message(from, message, bytes);
     pthread_mutex_unlock(&turn);
     return taken;
 }

@@ -153,7 +153,7 @@ static int add_pictures(writer *w)
 
 /* ---- meta.json ---- */
 
-static void say_files(adcgs_json *json, const char *first, const char *second)
+static void write_files(adcgs_json *json, const char *first, const char *second)
 {
     adcgs_json_open(json, "files", '[');
     adcgs_json_string(json, NULL, first);
@@ -162,14 +162,14 @@ static void say_files(adcgs_json *json, const char *first, const char *second)
     adcgs_json_close(json);
 }
 
-static void say_book(adcgs_json *json, const char *key, const float *book, const char *file)
+static void write_book(adcgs_json *json, const char *key, const float *book, const char *file)
 {
     adcgs_json_open(json, key, '{');
     adcgs_json_open(json, "codebook", '[');
     for (int k = 0; k < ADCGS_CODEBOOK; k++)
         adcgs_json_real(json, NULL, (double)book[k]);
     adcgs_json_close(json);
-    say_files(json, file, NULL);
+    write_files(json, file, NULL);
     adcgs_json_close(json);
 }
 
@@ -192,13 +192,13 @@ static adcgs_status write_meta(FILE *file, const writer *w, const char *generato
             adcgs_json_real(&json, NULL, side ? w->high[a] : w->low[a]);
         adcgs_json_close(&json);
     }
-    say_files(&json, "means_l.webp", "means_u.webp");
+    write_files(&json, "means_l.webp", "means_u.webp");
     adcgs_json_close(&json);
-    say_book(&json, "scales", w->scales, "scales.webp");
+    write_book(&json, "scales", w->scales, "scales.webp");
     adcgs_json_open(&json, "quats", '{');
-    say_files(&json, "quats.webp", NULL);
+    write_files(&json, "quats.webp", NULL);
     adcgs_json_close(&json);
-    say_book(&json, "sh0", w->colours, "sh0.webp");
+    write_book(&json, "sh0", w->colours, "sh0.webp");
     adcgs_json_close(&json);
     return adcgs_json_write(&json, file, path, error);
 }

@@ -37,7 +37,7 @@ static int may_be(int role, float v)
     return isfinite(v) || (!isnan(v) && (role == OPACITY || (is_scale && v < 0.0f)));
 }
 
-static void take(void *user, uint64_t vertex, const adcgs_ply_property *property, double value)
+static void set_property(void *user, uint64_t vertex, const adcgs_ply_property *property, double value)
 {
     taker *t = user;
     const float v = (float)(property->role < DC ? value - t->shift[property->role] : value);
@@ -119,7 +119,7 @@ static adcgs_status activate(adcgs_splats *s, uint32_t i, const char *path, adcg
 static adcgs_status read_vertices(adcgs_ply *ply, taker *t)
 {
     adcgs_splats *s = t->out;
-    ADCGS_TRY(adcgs_ply_vertices(ply, take, t));
+    ADCGS_TRY(adcgs_ply_vertices(ply, set_property, t));
     if (t->fault >= REST)
         return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: vertex %llu: f_rest_%d is not a finite number", ply->path,
                           (unsigned long long)t->where, t->fault - REST);

@@ -275,7 +275,7 @@ static adcgs_status add_videos(reader *r)
 /* ---- The scene ---- */
 
 /** Reports the choice if there are several models. */
-static void tell_models(const reader *r)
+static void remark_models(const reader *r)
 {
     const adcgs_colmap_models *m = &r->models;
     if (m->n < 2)
@@ -306,7 +306,7 @@ static adcgs_status read_model(reader *r, int with_points)
     char *video = find_video(r, r->model.images[0].name);
     const int has_videos = video != NULL;
     free(video);
-    tell_models(r);
+    remark_models(r);
     for (int f = ADCGS_COLMAP_CAMERAS; f <= ADCGS_COLMAP_IMAGES; f++)
         ADCGS_TRY(adcgs_colmap_twice_remark(r->scene, &r->model, &r->place, (adcgs_colmap_file)f, r->error));
     ADCGS_TRY(has_videos ? add_videos(r) : add_pictures(r));

@@ -77,7 +77,7 @@ static adcgs_status add(search *s, adcgs_colmap_place *here)
 }
 
 /** Looks into "DIRECTORY/PLACE". */
-static adcgs_status look(search *s, const char *place)
+static adcgs_status search_folder(search *s, const char *place)
 {
     adcgs_colmap_place here = {0};
     if ((s->first && s->found->n) || !adcgs_colmap_format(s->directory, place, &here.format))
@@ -95,11 +95,11 @@ adcgs_status adcgs_colmap_find(adcgs_colmap_models *out, const char *directory, 
     for (size_t g = 0; status == ADCGS_OK && !out->n && g < ADCGS_COUNTOF(groups); g++) {
         for (size_t i = 0; status == ADCGS_OK && i < ADCGS_COUNTOF(groups[g].whole); i++)
             if (groups[g].whole[i])
-                status = look(&s, groups[g].whole[i]);
+                status = search_folder(&s, groups[g].whole[i]);
         for (int number = 1; status == ADCGS_OK && number < NUMBERS; number++) {
             char place[64];
             snprintf(place, sizeof place, "%s%d/", groups[g].parent, number);
-            status = look(&s, place);
+            status = search_folder(&s, place);
         }
     }
     if (status != ADCGS_OK)

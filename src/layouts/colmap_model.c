@@ -108,7 +108,7 @@ static void set_param(adcgs_lens *lens, int param, double value)
 /**
  * Makes room for one more element in an array that grows by doubling. NULL on allocation failure; the array is unchanged then.
  */
-static void *grow(void *array, size_t n, size_t element)
+static void *grow_array(void *array, size_t n, size_t element)
 {
     return n & (n - 1) ? array : realloc(array, (n ? 2 * n : 1) * element);
 }
@@ -131,7 +131,7 @@ adcgs_status adcgs_colmap_add_camera(adcgs_colmap *model, uint32_t id, int kind,
     if (!(camera.lens.fx >= 1e-3 && camera.lens.fy >= 1e-3))
         return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "focal lengths %g and %g, expected at least 0.001 pixels", camera.lens.fx,
                                 camera.lens.fy);
-    adcgs_colmap_camera *cameras = grow(model->cameras, model->n_cameras, sizeof *cameras);
+    adcgs_colmap_camera *cameras = grow_array(model->cameras, model->n_cameras, sizeof *cameras);
     if (!cameras)
         return adcgs_colmap_bad(model, ADCGS_ERR_MEMORY, "out of memory");
     model->cameras = cameras;
@@ -204,7 +204,7 @@ adcgs_status adcgs_colmap_add_image(adcgs_colmap *model, uint32_t id, const doub
         return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "expected the name of an image below the folder, not \"%.64s\"", name);
     if (!invert_pose(q, t, image.cam_to_world))
         return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "%.64s: the pose is no rotation and translation of finite numbers", name);
-    adcgs_colmap_image *images = grow(model->images, model->n_images, sizeof *images);
+    adcgs_colmap_image *images = grow_array(model->images, model->n_images, sizeof *images);
     if (images)
         model->images = images;
     if (!images || !(image.name = strdup(name)))

@@ -192,7 +192,7 @@ static adcgs_status note_complete(adcgs_live_watch *l, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static adcgs_status look(adcgs_live_watch *l, int *progress, adcgs_error *error)
+static adcgs_status poll_cameras(adcgs_live_watch *l, int *progress, adcgs_error *error)
 {
     const int stops = l->interrupted() != 0;
     const int is_end = stops || adcgs_is_there(l->end_path); /* checked before the last footage is looked for */
@@ -229,7 +229,7 @@ static void *run(void *user)
     for (int on = 1; on;) {
         int progress = 0;
         pthread_mutex_lock(&l->lock);
-        l->error.status = look(l, &progress, &l->error);
+        l->error.status = poll_cameras(l, &progress, &l->error);
         on = !l->stop && !l->is_over && l->error.status == ADCGS_OK;
         if (!on)
             pthread_cond_broadcast(&l->changed);

@@ -314,7 +314,7 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
 }
 
 /** If sizes differ, each image has its own size. Intrinsics in pixels shared by all images may be wrong for some. */
-static void tell_sizes(const place *at, adcgs_scene *scene)
+static void remark_sizes(const place *at, adcgs_scene *scene)
 {
     if (!at->other_width || json_object_get(at->json.root, "w") || !json_object_get(at->json.root, "fl_x"))
         return;
@@ -350,7 +350,7 @@ static adcgs_status read_root(place *at, adcgs_scene *scene, adcgs_transforms *o
     if (split == ADCGS_SPLIT_TRAIN || split == ADCGS_SPLITS) /* only the training split decides */
         ADCGS_TRY(find_points(at, scene, out));
     ADCGS_TRY(read_frames(at, scene, out, split));
-    tell_sizes(at, scene);
+    remark_sizes(at, scene);
     return ADCGS_OK;
 }
 

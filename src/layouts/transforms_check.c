@@ -54,7 +54,7 @@ static size_t distinct(double *values, size_t n)
     return found;
 }
 
-static void tell_scaled(adcgs_scene *scene, const adcgs_transforms *facts, double low, double high, size_t moments)
+static void remark_scaled(adcgs_scene *scene, const adcgs_transforms *facts, double low, double high, size_t moments)
 {
     const double fps = (double)(moments - 1) / (high - low), far = fmax(fabs(low), fabs(high));
     const int digits = (int)fmin(17.0, fmax(10.0, ceil(log10(far / (high - low)) + 4.0))); /* four digits of the range */
@@ -79,7 +79,7 @@ static adcgs_status scale_times(adcgs_scene *scene, const adcgs_transforms *fact
     if (is_scaled) {
         low = first;
         high = last > first ? last : first + 1.0;
-        tell_scaled(scene, facts, low, high, distinct(times, n));
+        remark_scaled(scene, facts, low, high, distinct(times, n));
     }
     free(list);
     free(times);
@@ -113,7 +113,7 @@ static int names_count(const listed *sorted, size_t n)
     return adcgs_counting_holds(&counting);
 }
 
-static void tell_times(adcgs_scene *scene, const adcgs_transforms *facts, int is_single, const listed *sorted, size_t n)
+static void remark_times(adcgs_scene *scene, const adcgs_transforms *facts, int is_single, const listed *sorted, size_t n)
 {
     if (facts->has_times)
         return;
@@ -228,7 +228,7 @@ static void name_apart(adcgs_scene *scene, listed *sorted, size_t n)
 /* ---- All ---- */
 
 /** Reports images without a frame, if all frames lie in one folder for images. */
-static adcgs_status tell_unposed(adcgs_scene *scene, const listed *sorted, size_t n, adcgs_error *error)
+static adcgs_status remark_unposed(adcgs_scene *scene, const listed *sorted, size_t n, adcgs_error *error)
 {
     const size_t common = common_folders(sorted, n), above = strlen(scene->directory) + 1;
     const char *folder = sorted[0].view->path;
@@ -251,10 +251,10 @@ adcgs_status adcgs_transforms_check(adcgs_scene *scene, const adcgs_transforms *
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (n)
         qsort(list, n, sizeof *list, by_path);
-    tell_times(scene, facts, is_single, list, n);
+    remark_times(scene, facts, is_single, list, n);
     adcgs_status status = find_twice(scene, list, n, !is_single || facts->has_lists, path, error);
     if (status == ADCGS_OK && n && is_single && !facts->has_lists)
-        status = tell_unposed(scene, list, n, error);
+        status = remark_unposed(scene, list, n, error);
     if (status == ADCGS_OK)
         status = adcgs_unmasked_remark(scene, "by mask_path", error);
     if (status == ADCGS_OK)

@@ -44,7 +44,8 @@ typedef struct session {
 } session;
 
 /** A view's true image, and its camera at that size. */
-static adcgs_status load(const session *s, const adcgs_scene_view *view, float **truth, adcgs_camera *camera, adcgs_error *error)
+static adcgs_status load_truth(const session *s, const adcgs_scene_view *view, float **truth, adcgs_camera *camera,
+                               adcgs_error *error)
 {
     return adcgs_scene_load(s->scene, view, ADCGS_MAX(s->scene->measured, 1), truth, camera, error);
 }
@@ -55,7 +56,7 @@ static adcgs_status look_ahead(session *s, uint32_t first, uint32_t end, adcgs_e
     for (uint32_t i = first; i < end; i++) {
         adcgs_camera camera;
         float *truth;
-        ADCGS_TRY(load(s, &s->views[s->order[i]], &truth, &camera, error));
+        ADCGS_TRY(load_truth(s, &s->views[s->order[i]], &truth, &camera, error));
         const adcgs_status status = i > first ? ADCGS_OK
                                               : adcgs_temporal_create(&s->temporal, camera.width, camera.height, error);
         if (status == ADCGS_OK)
@@ -136,7 +137,7 @@ static adcgs_status score_view(session *s, uint32_t i, adcgs_view_score *score, 
     const adcgs_scene_view *view = &s->views[s->order[i]];
     adcgs_camera camera;
     float *truth;
-    ADCGS_TRY(load(s, view, &truth, &camera, error));
+    ADCGS_TRY(load_truth(s, view, &truth, &camera, error));
     const size_t pixels = (size_t)camera.width * (size_t)camera.height;
     float *rgb = malloc(pixels * 3 * sizeof *rgb), *planar = malloc(pixels * 3 * sizeof *planar);
     uint8_t *levels = malloc(pixels * 3);

@@ -72,7 +72,7 @@ static adcgs_status append(adcgs_feed *f, size_t n)
 }
 
 /** Waits for bytes and keeps them. \return nonzero if anything has changed */
-static int take(adcgs_feed *f)
+static int take_bytes(adcgs_feed *f)
 {
     adcgs_error error = {.status = ADCGS_OK};
     size_t got;
@@ -91,7 +91,7 @@ static int take(adcgs_feed *f)
 void adcgs_feed_wait(adcgs_feed *f)
 {
     if (!f->ended)
-        take(f);
+        take_bytes(f);
 }
 
 static int goes_on(adcgs_feed *f)
@@ -106,7 +106,7 @@ static void *read_on(void *arg)
 {
     adcgs_feed *const f = arg;
     while (goes_on(f))
-        if (take(f))
+        if (take_bytes(f))
             f->wake(f->arg);
     return NULL;
 }

@@ -68,7 +68,7 @@ static adcgs_status step(adcgs_intake *in, uint64_t limit, int *some, adcgs_arri
     return status == ADCGS_OK && *arrived == ADCGS_ARRIVED_END ? end(in) : status;
 }
 
-static void look(adcgs_intake *in)
+static void update_info(adcgs_intake *in)
 {
     adcgs_info *const info = &in->come.info;
     if (adcgs_get_info(in->decoder, info, sizeof *info, NULL) == ADCGS_OK)
@@ -83,7 +83,7 @@ static int go_on(adcgs_intake *in, uint64_t limit, int *some)
     in->come.fault.status = status;
     in->come.over |= status != ADCGS_OK;
     if (arrived == ADCGS_ARRIVED_SEGMENT && !in->come.drawable)
-        look(in);
+        update_info(in);
     return arrived >= ADCGS_ARRIVED_SEGMENT || in->come.over;
 }
 
@@ -94,7 +94,7 @@ static adcgs_status begin_anew(adcgs_intake *in, int layers, adcgs_error *error)
     ADCGS_TRY(open_layers(in, layers, error));
     for (int some = 1; some && !in->come.over && (in->come.bytes < before.bytes || before.over);)
         go_on(in, before.over ? UINT64_MAX : before.bytes, &some);
-    look(in);
+    update_info(in);
     return ADCGS_OK;
 }
 
@@ -110,6 +110,6 @@ adcgs_status adcgs_intake_take(adcgs_intake *in, int layers, int more, int *chan
         if (in->come.drawable && !was_drawable)
             break; /* shows the first image at once */
     }
-    look(in);
+    update_info(in);
     return ADCGS_OK;
 }

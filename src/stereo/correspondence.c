@@ -136,7 +136,7 @@ static field field_about(const adcgs_stereo_view *v, const double at[2], int rea
 }
 
 /** Finds the unique pixel of the field with a similar window, to a fraction of a pixel. Returns 0 if there is none. */
-static int look(const adcgs_patch_image *in, const float own[WINDOW], const field *f, float *alike, double at[2])
+static int find_match(const adcgs_patch_image *in, const float own[WINDOW], const field *f, float *alike, double at[2])
 {
     const int w = f->x1 - f->x0, h = f->y1 - f->y0;
     int best = -1;
@@ -187,7 +187,7 @@ void adcgs_correspondences_add(adcgs_correspondences *s, const adcgs_patch_image
         adcgs_correspondence *const match = &s->match[s->n];
         if (f.x1 - f.x0 < 3 || f.y1 - f.y0 < 3 ||
             !(adcgs_window_sample(own, other->view, own_at, right, down) > ADCGS_WINDOW_TEXTURE) ||
-            !look(in, own, &f, alike, match->at))
+            !find_match(in, own, &f, alike, match->at))
             continue;
         adcgs_stereo_rig_lift(other->view, m->px, m->py, m->depth, match->x);
         match->from = from;

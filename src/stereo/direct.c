@@ -97,8 +97,8 @@ static void add_slope(pass *p, const adcgs_sample *s, const double row[2][6], co
 }
 
 /** Samples the view at a point. at[2]: its pixel position. Returns 0 if the view gives no sample. */
-static int look(const adcgs_frame_views *views, int k, const double x[3], const double normal[3], double at[2], double *depth,
-                adcgs_sample *s)
+static int sample_view(const adcgs_frame_views *views, int k, const double x[3], const double normal[3], double at[2],
+                       double *depth, adcgs_sample *s)
 {
     const adcgs_stereo_view *v = &views->camera[k]->view;
     return adcgs_faces(v, x, normal) && adcgs_stereo_rig_project(v, x, at, depth) &&
@@ -115,7 +115,7 @@ static void run(pass *p, const adcgs_body_model *m, const adcgs_frame_views *vie
         if (!adcgs_body_point_at(m, i, &place->at, views, x, normal))
             continue;
         for (int k = 0; k < views->n; k++) {
-            if (!look(views, k, x, normal, at, &depth, &s))
+            if (!sample_view(views, k, x, normal, at, &depth, &s))
                 continue;
             const double weight = add_sample(p, &s, m->p[i].rgb, place->gain[side], side, trust, off);
             if (!p->moves)
@@ -197,7 +197,7 @@ double adcgs_direct_point(const adcgs_body_model *m, uint32_t i, const adcgs_fra
     for (int k = 0; k < views->n; k++) {
         double at[2], depth, off = 0;
         adcgs_sample s;
-        if (!look(views, k, x, normal, at, &depth, &s))
+        if (!sample_view(views, k, x, normal, at, &depth, &s))
             continue;
         for (int a = 0; a < 3; a++)
             off += pow((double)(place->gain[m->more[i].side][a] * m->p[i].rgb[a]) - s.rgb[a], 2);
@@ -264,7 +264,7 @@ double adcgs_direct_any_light(const adcgs_body_model *m, const adcgs_frame_views
             if (!adcgs_body_point_at(m, i, at, views, x, normal))
                 continue;
             for (int k = 0; k < views->n; k++) {
-                if (!look(views, k, x, normal, where, &depth, &s))
+                if (!sample_view(views, k, x, normal, where, &depth, &s))
                     continue;
                 light += add_line(lines[m->more[i].side], m->p[i].rgb, &s);
                 n++;

@@ -143,8 +143,8 @@ static uint8_t *to_bytes(const float *rgb, size_t plane, adcgs_error *error)
     return bytes;
 }
 
-static adcgs_status load(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_stereo_options *o,
-                         adcgs_stereo_camera *camera, int frame, adcgs_error *error)
+static adcgs_status load_frame(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_stereo_options *o,
+                               adcgs_stereo_camera *camera, int frame, adcgs_error *error)
 {
     float *rgb;
     adcgs_camera small;
@@ -277,7 +277,7 @@ static adcgs_status load_camera(const adcgs_stereo_rig *rig, adcgs_stereo_camera
             m++;
         if (m == rig->n_frames || rig->frame_time[m] > t || camera->frame[m])
             continue;
-        ADCGS_TRY(load(scene, view, o, camera, m, error));
+        ADCGS_TRY(load_frame(scene, view, o, camera, m, error));
         loaded++;
     }
     return loaded ? find_usual(camera, error) : ADCGS_OK;
@@ -315,7 +315,7 @@ static adcgs_status load_film(adcgs_stereo_rig *rig, const adcgs_scene *scene, c
         const uint32_t view = x->film[(uint64_t)c * (x->n - 1) / (uint64_t)(rig->n_cameras - 1)];
         rig->frame_time[c] = time_of(scene, x->views[view].time);
         rig->camera[c].first = view;
-        ADCGS_TRY(load(scene, &x->views[view], o, &rig->camera[c], c, error));
+        ADCGS_TRY(load_frame(scene, &x->views[view], o, &rig->camera[c], c, error));
         ADCGS_TRY(find_usual(&rig->camera[c], error));
     }
     return ADCGS_OK;

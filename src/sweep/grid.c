@@ -63,7 +63,7 @@ static adcgs_status check_option(int option, const char *value, adcgs_error *err
 /* ---- Parsing ---- */
 
 /** Copies the text; returns 0 if it is empty or too long, or has characters that are unsuitable for file names. */
-static int take(char out[ADCGS_SWEEP_NAME], const char *text, size_t length)
+static int copy_name(char out[ADCGS_SWEEP_NAME], const char *text, size_t length)
 {
     static const char fine[] = "abcdefghijklmnopqrstuvwxyz0123456789_.-+E";
     if (!length || length >= ADCGS_SWEEP_NAME || strspn(text, fine) < length)
@@ -77,10 +77,10 @@ static adcgs_status parse_axis(adcgs_sweep_grid *grid, const char *text, size_t 
 {
     const char *const end = text + length, *const equals = memchr(text, '=', length);
     adcgs_sweep_axis axis = { .n = 0 };
-    int fine = grid->n < ADCGS_SWEEP_AXES && equals && take(axis.name, text, (size_t)(equals - text));
+    int fine = grid->n < ADCGS_SWEEP_AXES && equals && copy_name(axis.name, text, (size_t)(equals - text));
     for (const char *at = equals; fine && at < end;) {
         const size_t n = strcspn(++at, "," BLANKS);
-        fine = axis.n < ADCGS_SWEEP_LIST && take(axis.value[axis.n++], at, n);
+        fine = axis.n < ADCGS_SWEEP_LIST && copy_name(axis.value[axis.n++], at, n);
         at += n;
     }
     if (!fine)

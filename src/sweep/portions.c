@@ -126,7 +126,7 @@ static adcgs_status save(const adcgs_sweep *sweep, const adcgs_sweep_shown *show
                             error);
 }
 
-static void take(adcgs_sweep_shown *shown, const json_t *kept)
+static void read_portion(adcgs_sweep_shown *shown, const json_t *kept)
 {
     const char *const of = json_string_value(json_object_get(kept, "of"));
     for (int kind = 0; of && kind < ADCGS_PORTION_COUNT; kind++) {
@@ -153,7 +153,7 @@ static int find_kept(const adcgs_sweep *sweep, adcgs_sweep_shown *shown)
         return 0;
     const json_t *const kept = json_object_get(root, "portions");
     for (size_t i = 0; adcgs_sweep_same_settings(sweep, shown->run, root) && i < json_array_size(kept); i++)
-        take(shown, json_array_get(kept, i));
+        read_portion(shown, json_array_get(kept, i));
     json_decref(root);
     return shown->n_portions > 0;
 }

@@ -253,7 +253,7 @@ static adcgs_status show_live(const adcgs_cli *cli, const settings *s, adcgs_dec
 }
 
 /** Resolves --time N% to one of the stream's frames. */
-static adcgs_status place_moment(settings *s, const adcgs_decoder *decoder, adcgs_error *error)
+static adcgs_status place_times(settings *s, const adcgs_decoder *decoder, adcgs_error *error)
 {
     adcgs_info info;
     if (s->part < 0.0)
@@ -285,7 +285,7 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
         return show_live(cli, s, decoder, mismatch, error);
     ADCGS_TRY(open_input(decoder, &s->http, s->input, s, error));
     from.decoder = *decoder;
-    ADCGS_TRY(place_moment(s, from.decoder, error));
+    ADCGS_TRY(place_times(s, from.decoder, error));
     if (s->cameras)
         return write_cameras(s, from.decoder, error);
     if (s->splats) {

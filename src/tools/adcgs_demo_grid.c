@@ -19,7 +19,7 @@ typedef struct grid {
 enum { ROW_TRUTH, ROW_DECODED, ROW_DIFFERENCE, ROWS };
 
 /* Takes views evenly from the split, and skips those of another size than the first. */
-static adcgs_status take(void *user, const adcgs_view_score *score, adcgs_error *error)
+static adcgs_status place_view(void *user, const adcgs_view_score *score, adcgs_error *error)
 {
     grid *const g = user;
     const int wanted = g->placed < g->columns && (int64_t)g->seen * g->columns >= (int64_t)g->placed * g->total;
@@ -57,7 +57,7 @@ static adcgs_status draw(const char *stream, const char *folder, const char *out
     if (status == ADCGS_OK) {
         g.total = (int)scene->n_views[ADCGS_SPLIT_TEST];
         g.columns = ADCGS_MIN(columns, ADCGS_MAX(g.total, 1));
-        status = adcgs_evaluate(&evaluation, decoder, scene, ADCGS_SPLIT_TEST, 0, take, &g, error);
+        status = adcgs_evaluate(&evaluation, decoder, scene, ADCGS_SPLIT_TEST, 0, place_view, &g, error);
     }
     if (status == ADCGS_OK)
         status = adcgs_image_write(&g.mosaic.image, output, 0, error);

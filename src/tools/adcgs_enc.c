@@ -340,7 +340,7 @@ static const adcgs_cli program = {
 };
 
 /** Reports surplus operands. Other players take a file of splats for each timestamp. */
-static int tell_surplus(const adcgs_cli *cli, int n, char **operands)
+static int report_surplus(const adcgs_cli *cli, int n, char **operands)
 {
     int splats = 0;
     while (splats < n && adcgs_kind_at(operands[splats])->class == ADCGS_KIND_SPLATS)
@@ -511,7 +511,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     if (first >= argc)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
     if (first + 1 < argc)
-        return tell_surplus(cli, argc - first, argv + first);
+        return report_surplus(cli, argc - first, argv + first);
     o->scene = argv[first];
     if (o->plan)
         return -1;

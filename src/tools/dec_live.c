@@ -41,7 +41,7 @@ static adcgs_status step(adcgs_live *live, adcgs_error *error)
 }
 
 /** The stream's info; before the header is read, no time can be rendered. */
-static adcgs_info look(const adcgs_live *live)
+static adcgs_info get_info(const adcgs_live *live)
 {
     adcgs_info info;
     if (adcgs_get_info(live->decoder, &info, sizeof info, NULL) != ADCGS_OK)
@@ -71,14 +71,14 @@ adcgs_status adcgs_live_open(adcgs_live *live, adcgs_decoder **decoder, const ch
     if (!live->buffer)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", live->in.name);
     adcgs_info info = {.time_available = -INFINITY};
-    for (; !live->over && isinf(info.time_available) && !adcgs_interrupted(); info = look(live))
+    for (; !live->over && isinf(info.time_available) && !adcgs_interrupted(); info = get_info(live))
         ADCGS_TRY(step(live, error));
     return are_known(&info, request) ? ADCGS_OK : adcgs_live_wait(live, INFINITY, error);
 }
 
 adcgs_status adcgs_live_wait(adcgs_live *live, double time, adcgs_error *error)
 {
-    while (!live->over && !adcgs_interrupted() && (isinf(time) || !(time < look(live).time_committed)))
+    while (!live->over && !adcgs_interrupted() && (isinf(time) || !(time < get_info(live).time_committed)))
         ADCGS_TRY(step(live, error));
     return live->over ? ADCGS_OK : adcgs_push_discard_before(live->decoder, time, error);
 }

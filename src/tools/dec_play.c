@@ -20,8 +20,8 @@
 #define STREAM_BYTES_MAX ((uint64_t)1 << 32) /* the player keeps the bytes to open the stream with other layers */
 
 /** Collects the stream's properties for the player. The caller frees the cameras. */
-static adcgs_status look(const adcgs_dec_play *how, const adcgs_decoder *decoder, adcgs_play_settings *settings,
-                         adcgs_camera **cameras, adcgs_error *error)
+static adcgs_status collect_properties(const adcgs_dec_play *how, const adcgs_decoder *decoder, adcgs_play_settings *settings,
+                                       adcgs_camera **cameras, adcgs_error *error)
 {
     adcgs_info *const info = &settings->info;
     adcgs_camera_path_request request = how->request;
@@ -107,7 +107,7 @@ static adcgs_status play(const adcgs_dec_play *how, adcgs_play_settings *setting
     adcgs_camera *cameras = NULL;
     adcgs_status status = open_front(&decoder, &settings->source, &settings->config, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
-        status = look(how, decoder, settings, &cameras, error);
+        status = collect_properties(how, decoder, settings, &cameras, error);
     adcgs_close(&decoder); /* the player opens the stream on its own thread */
     set_times(&how->request, settings);
     if (status == ADCGS_OK && !adcgs_interrupted())

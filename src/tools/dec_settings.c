@@ -90,7 +90,7 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPT
 }
 
 /** Reports a concealed fault. */
-static void tell_fault(void *user, adcgs_log_level level, const char *text)
+static void report_fault(void *user, adcgs_log_level level, const char *text)
 {
     const adcgs_dec_settings *s = user;
     if (level == ADCGS_LOG_WARNING)
@@ -153,7 +153,7 @@ adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
     if (s->config.conceal && !strcmp(s->input, "-"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--conceal needs a file: standard input cannot be read twice");
     if (s->config.conceal) {
-        s->config.log = tell_fault;
+        s->config.log = report_fault;
         s->config.log_user = s;
     }
     s->config.on_demand = s->times || s->play; /* a whole clip is read, and checked, as a whole */

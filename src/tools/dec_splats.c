@@ -39,8 +39,8 @@ static uint8_t axes_of(const adcgs_info *info)
     return ADCGS_SPLATS_UP_UNKNOWN;
 }
 
-static adcgs_status write_moment(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, double time, int rest_degree,
-                                 const char *path, adcgs_error *error)
+static adcgs_status write_frame(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, double time, int rest_degree,
+                                const char *path, adcgs_error *error)
 {
     adcgs_primitives primitives;
     adcgs_splats splats;
@@ -57,7 +57,7 @@ static adcgs_status write_moment(uint32_t *n, adcgs_decoder *decoder, const adcg
 }
 
 /** Reports the offset, and its place in the file, if binary32 cannot hold positions in the world. */
-static void tell_offset(const adcgs_cli *cli, const adcgs_info *info, const char *target)
+static void report_offset(const adcgs_cli *cli, const adcgs_info *info, const char *target)
 {
     static const struct {
         const char *extension, *place;
@@ -82,7 +82,7 @@ static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_i
     adcgs_status status = ADCGS_OK;
     for (int i = 0; i < frames->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
         adcgs_pattern_format(how->target, i, path, size);
-        status = write_moment(n, decoder, info, frames->frame[i].time, how->rest_degree, path, error);
+        status = write_frame(n, decoder, info, frames->frame[i].time, how->rest_degree, path, error);
     }
     free(path);
     return status;
@@ -95,16 +95,16 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
     adcgs_info info;
     adcgs_camera_path frames;
     uint32_t n = 0;
-    adcgs_camera_path_request moments = {.has_times = 1, .begin = request->begin, .end = request->end};
+    adcgs_camera_path_request times = {.has_times = 1, .begin = request->begin, .end = request->end};
     ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     if (!request->has_times) {
-        moments.begin = info.time_start;
-        moments.end = adcgs_pattern_places(how->target) == 0 ? info.time_start : info.time_end;
+        times.begin = info.time_start;
+        times.end = adcgs_pattern_places(how->target) == 0 ? info.time_start : info.time_end;
     }
-    ADCGS_TRY(check_target(how->target, &style, moments.end > moments.begin, error));
+    ADCGS_TRY(check_target(how->target, &style, times.end > times.begin, error));
     if (info.truncated)
         adcgs_cli_note(cli, "%s: the stream ends early; writing its complete part", input);
-    ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &moments, error));
+    ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &times, error));
     if (frames.outside)
         adcgs_cli_note(cli, "%s: %d of %d file%s %s its first or last frame: the stream lasts from %g to %g "
                             "s", input, frames.outside,
@@ -112,7 +112,7 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
                        info.time_start, info.time_end);
     const adcgs_status status = write_all(&n, decoder, &info, how, &frames, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
-        tell_offset(cli, &info, how->target);
+        report_offset(cli, &info, how->target);
     if (status == ADCGS_OK && !adcgs_interrupted())
         adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, frames.n, frames.n == 1 ? "" : "s", n);
     adcgs_camera_path_free(&frames);

@@ -39,7 +39,7 @@ static adcgs_status count(void *user, const adcgs_view_score *score, adcgs_error
     return ADCGS_OK;
 }
 
-static void say_odd(const adcgs_cli *cli, const tally *list, int cameras, const char *file)
+static void report_outliers(const adcgs_cli *cli, const tally *list, int cameras, const char *file)
 {
     double mean[VIEWS], sorted[VIEWS];
     int named = 0;
@@ -83,5 +83,5 @@ void adcgs_enc_diagnose(const adcgs_cli *cli, adcgs_decoder *decoder, const adcg
     if (unseen < mean.psnr - DB_UNSEEN)
         adcgs_cli_note(cli, "%s: training views have %.1f dB, others %.1f: check poses, axes and times, and the number of views",
                        file, mean.psnr, unseen);
-    say_odd(cli, found.of, cameras, file);
+    report_outliers(cli, found.of, cameras, file);
 }

@@ -11,14 +11,14 @@
 #define GUARD 0.95  /* share of the remaining time at which the time limit lies */
 #define BLIND 2.0   /* seconds that must remain for a segment to be trained by the clock before any speed is known */
 #define NEWS 0.4    /* relative change of effort that is reported again */
-#define MOMENTS 8   /* matched frames of a segment with a delay, without rigid bodies: matching takes as long as much of a run */
+#define FRAMES 8    /* matched frames of a segment with a delay, without rigid bodies: matching takes as long as much of a run */
 
 void adcgs_enc_effort_init(adcgs_enc_effort *e, adcgs_enc_job *job)
 {
     *e = (adcgs_enc_effort){ .delay = job->o->has_delay ? job->o->delay : 0, .most = job->config.iterations };
     if (!(e->delay > 0))
         return;
-    job->config.matching_frames = (uint8_t)ADCGS_MIN(job->config.matching_frames, MOMENTS);
+    job->config.matching_frames = (uint8_t)ADCGS_MIN(job->config.matching_frames, FRAMES);
     job->config.params.bodies = 0;
 }
 

@@ -29,7 +29,7 @@ static const char *others(char text[64], const char *what, const adcgs_fault *f)
     return text;
 }
 
-static void say_gaps(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)
+static void report_gaps(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)
 {
     char more[64];
     if (!f->path)
@@ -50,7 +50,7 @@ static const char *so_are(char text[64], double n)
     return text;
 }
 
-static void say_doubled(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
+static void report_duplicates(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
 {
     char more[64], of_this[64] = "";
     if (f->size > 1)
@@ -60,7 +60,7 @@ static void say_doubled(const adcgs_cli *cli, const adcgs_scene *scene, const ad
                    short_name(scene, f->path), begins + f->from, so_are(more, f->size - 1), of_this);
 }
 
-static void say_copied(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
+static void report_copies(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
 {
     char more[64];
     adcgs_cli_note(cli, "%s: the image at %.3f s repeats the previous image of another camera%s: check for mixed-up files",
@@ -68,7 +68,7 @@ static void say_copied(const adcgs_cli *cli, const adcgs_scene *scene, const adc
 }
 
 /** is_evened: the step was removed from the images. */
-static void say_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins, int is_evened)
+static void report_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins, int is_evened)
 {
     static const char *const what[ADCGS_LIGHTS][2] = { { "bright", "exposure" }, { "red relative to green", "white balance" },
                                                        { "blue relative to green", "white balance" } };
@@ -83,12 +83,12 @@ static void say_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcg
 void adcgs_enc_report_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *light)
 {
     if (light->cameras)
-        say_light(cli, scene, light, 0, 1);
+        report_light(cli, scene, light, 0, 1);
     else
         adcgs_cli_note(cli, "%s: exposure_step_compensation: no steps of light found", scene->directory);
 }
 
-static void say_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)
+static void report_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)
 {
     char more[64];
     adcgs_cli_note(cli, "%s: its camera appears %u frame%s %s than others%s: check synchronisation",
@@ -96,14 +96,14 @@ static void say_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adc
                    others(more, "; also", f));
 }
 
-static void say_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_pose_error *poses)
+static void report_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_pose_error *poses)
 {
     adcgs_cli_note(cli, "%s: matched points of cameras lie %.1f pixels apart (median): check poses and lenses",
                    scene->directory, poses->median * poses->pixels);
 }
 
 /** Reports the convention that fits the poses, if it is not the given one. */
-static void say_axes(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_axes_check *d)
+static void report_axes(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_axes_check *d)
 {
     static const char *const changes[ADCGS_READINGS] = {"", "y and z of all cameras are flipped", "all poses are inverted",
                                                         "all poses are inverted"};
@@ -125,7 +125,7 @@ static void say_axes(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs
 }
 
 /** Reports the pose of a single camera. */
-static void say_odd(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_pose_outlier *o, double pixels)
+static void report_pose_outlier(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_pose_outlier *o, double pixels)
 {
     const char *const path = short_name(scene, scene->views[ADCGS_SPLIT_TRAIN][o->view].path);
     adcgs_cli_note(cli, "%s: its camera disagrees with the others by %.1f pixels (rotation %.1f degrees, translation %.0f %% of "
@@ -137,20 +137,20 @@ static void say_odd(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_
 static void look_at_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_scene *whole, const adcgs_stereo *found,
                           adcgs_pool *pool, unsigned *told)
 {
-    adcgs_axes_check doubt;
+    adcgs_axes_check check;
     adcgs_error error;
-    if (!(*told & AXES) && adcgs_axes_check_run(&doubt, scene, found, pool, &error) == ADCGS_OK &&
-        doubt.meant != ADCGS_READ_AS_GIVEN) {
-        say_axes(cli, whole, &doubt);
+    if (!(*told & AXES) && adcgs_axes_check_run(&check, scene, found, pool, &error) == ADCGS_OK &&
+        check.meant != ADCGS_READ_AS_GIVEN) {
+        report_axes(cli, whole, &check);
         *told |= POSES;
     }
     *told |= AXES; /* checked for the first part of a scene */
     if (!(*told & POSES) && found->poses.pairs >= ADCGS_STEREO_PAIRS && !adcgs_stereo_poses_fit(&found->poses)) {
-        say_poses(cli, whole, &found->poses);
+        report_poses(cli, whole, &found->poses);
         *told |= POSES;
     }
     for (int i = 0; i < found->n_outliers && !(*told & POSES); i++)
-        say_odd(cli, scene, &found->outlier[i], found->poses.pixels);
+        report_pose_outlier(cli, scene, &found->outlier[i], found->poses.pixels);
 }
 
 /** Reports faults of the images, each kind once. */
@@ -161,15 +161,15 @@ static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, con
     adcgs_fault f;
     adcgs_error error;
     if (!(*told & COPIED) && adcgs_fault_copied(&f, views, tracks, thumbnails, &error) == ADCGS_OK && f.cameras) {
-        say_copied(cli, whole, &f, begins);
+        report_copies(cli, whole, &f, begins);
         *told |= COPIED;
     }
     if (!(*told & LIGHT) && adcgs_fault_light(&f, NULL, views, tracks, thumbnails, &error) == ADCGS_OK && f.cameras) {
-        say_light(cli, whole, &f, begins, 0);
+        report_light(cli, whole, &f, begins, 0);
         *told |= LIGHT;
     }
     if (!(*told & CLOCKS) && adcgs_fault_clocks(&f, views, tracks, thumbnails, &error) == ADCGS_OK && f.cameras) {
-        say_clocks(cli, whole, &f);
+        report_clocks(cli, whole, &f);
         *told |= CLOCKS;
     }
 }
@@ -181,7 +181,7 @@ void adcgs_enc_report_remarks(const adcgs_cli *cli, const adcgs_scene *scene)
 }
 
 /** Reports images that have no times, but seem to be frames. */
-static void say_times(const adcgs_cli *cli, const adcgs_scene *scene)
+static void report_times(const adcgs_cli *cli, const adcgs_scene *scene)
 {
     adcgs_cli_note(cli, "%s: the images' names are plain numbers, so the scene is static: if they are frames of a video, "
                         "adcgs-import makes a scene with times", scene->directory);
@@ -196,13 +196,13 @@ void adcgs_enc_diagnose_footage(const adcgs_cli *cli, const adcgs_scene *scene, 
     adcgs_camera_order tracks;
     adcgs_error error;
     if (!(*told & GAPS) && adcgs_fault_gaps(&gaps, whole, &error) == ADCGS_OK && gaps.cameras)
-        say_gaps(cli, whole, &gaps);
+        report_gaps(cli, whole, &gaps);
     if (!(*told & TIMES) && whole->counts)
-        say_times(cli, whole);
+        report_times(cli, whole);
     *told |= GAPS | TIMES; /* checks of the whole scene, once */
     look_at_poses(cli, scene, whole, found, pool, told);
     if (!(*told & DOUBLED) && doubled->cameras) {
-        say_doubled(cli, whole, doubled, begins);
+        report_duplicates(cli, whole, doubled, begins);
         *told |= DOUBLED;
     }
     if (adcgs_camera_order_find(&tracks, scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN], &error) != ADCGS_OK)

@@ -159,7 +159,7 @@ static adcgs_status learn_segment(live_run *r, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static void tell_missing(live_run *r)
+static void report_missing(live_run *r)
 {
     double time;
     for (const char *name; (name = adcgs_live_missing(r->live, &time));)
@@ -220,7 +220,7 @@ static adcgs_status learn_all(live_run *r, adcgs_error *error)
             return ADCGS_OK;
         if (is_first)
             ADCGS_TRY(settle(r, error));
-        tell_missing(r);
+        report_missing(r);
         const adcgs_status status = learn_segment(r, error);
         adcgs_trainer_free(&r->w->t);
         ADCGS_TRY(status);

@@ -144,13 +144,13 @@ adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, co
 
 void adcgs_enc_part_await(const char *base, uint32_t part)
 {
-    const struct timespec moment = { 0, AWAIT_NAP };
+    const struct timespec nap = { 0, AWAIT_NAP };
     adcgs_error ignored;
     char *name;
     if (adcgs_enc_part_name(&name, base, part, 1, &ignored) != ADCGS_OK)
         return;
     for (int i = 0; i < AWAIT_NAPS && access(name, F_OK) && errno == ENOENT; i++)
-        nanosleep(&moment, NULL);
+        nanosleep(&nap, NULL);
     free(name);
 }
 

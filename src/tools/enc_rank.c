@@ -23,8 +23,8 @@ adcgs_rank_note adcgs_rank_say(int kind, const adcgs_enc_job *job)
 
 void adcgs_rank_nap(void)
 {
-    const struct timespec moment = { 0, NAP };
-    nanosleep(&moment, NULL);
+    const struct timespec nap = { 0, NAP };
+    nanosleep(&nap, NULL);
 }
 
 adcgs_status adcgs_rank_fail(const adcgs_enc_job *job, adcgs_error *error)

@@ -68,7 +68,7 @@ static uint32_t keys_of(const adcgs_enc_job *job)
 }
 
 /** Reports ranks that stay idle and could be used. */
-static void say_idle(const adcgs_enc_job *job)
+static void report_idle(const adcgs_enc_job *job)
 {
     const uint32_t keys = keys_of(job), batch = job->config.batch;
     const int ranks = job->ranks->size, busy = adcgs_enc_team_busy(job->ranks, batch, keys);
@@ -92,7 +92,7 @@ adcgs_status adcgs_enc_ranks_gather(adcgs_enc_context *w, const adcgs_enc_job *j
 }
 
 /** Reports that rank 0 was interrupted while it waits for a rank of its team, which may have ended. */
-static void say_late(void *user, int rank, const char *host)
+static void report_late(void *user, int rank, const char *host)
 {
     adcgs_enc_context *w = user;
     const int keeps = !access(w->state, F_OK);
@@ -110,9 +110,9 @@ void adcgs_enc_ranks_whole(adcgs_enc_context *w, const adcgs_enc_job *job)
         w->on_progress = adcgs_rank_ignore_progress;
         return;
     }
-    w->team.late = say_late;
+    w->team.late = report_late;
     w->team.late_user = w;
-    say_idle(job);
+    report_idle(job);
 }
 
 /* ---- Handing out ---- */
@@ -213,7 +213,7 @@ static void show(leader *l)
 }
 
 /** Reports all ranks with their segments in one line, since the signal's sender has named at most one. */
-static void say_stopped(leader *l)
+static void report_stopped(leader *l)
 {
     char text[400] = "";
     size_t at = 0;
@@ -238,7 +238,7 @@ static adcgs_status lead(leader *l, adcgs_error *error)
         }
         show(l);
         if (adcgs_interrupted()) {
-            say_stopped(l);
+            report_stopped(l);
             return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", l->w->target);
         }
         adcgs_rank_nap();
@@ -272,7 +272,7 @@ adcgs_status adcgs_enc_ranks_lead(adcgs_enc_context *w, const adcgs_enc_job *job
     if (status == ADCGS_OK)
         status = adcgs_rank_start(&l.own, error);
     if (status == ADCGS_OK) {
-        say_idle(job);
+        report_idle(job);
         l.last[0] = adcgs_rank_say(ADCGS_RANK_READY, job);
         l.there[0] = 1;
         status = lead(&l, error);

@@ -160,7 +160,7 @@ static adcgs_status judge(const adcgs_cli *cli, outcome *o, const adcgs_enc_repo
     return ADCGS_OK;
 }
 
-static void say_missed(const adcgs_cli *cli, const adcgs_enc_report *r, const outcome *o)
+static void report_missed(const adcgs_cli *cli, const adcgs_enc_report *r, const outcome *o)
 {
     if (!strcmp(o->kind, "size"))
         adcgs_cli_error(cli, ADCGS_OK,
@@ -186,7 +186,7 @@ static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_rep
 }
 
 /** The file is complete, even if it could not be measured. */
-static void say_written(const adcgs_enc_report *r, adcgs_error *error)
+static void report_written(const adcgs_enc_report *r, adcgs_error *error)
 {
     const adcgs_error why = *error;
     adcgs_fail(error, why.status, "%s; but %s is written", why.text, r->file);
@@ -204,7 +204,7 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     adcgs_status status = measure(cli, &x, r, decoder, error);
     *met = status != ADCGS_OK || x.target.met;
     if (status != ADCGS_OK)
-        say_written(r, error);
+        report_written(r, error);
     if (status != ADCGS_OK && adcgs_interrupts() > r->interrupts && !r->json) {
         adcgs_close(&decoder);
         adcgs_cli_error(cli, ADCGS_OK, "%s", error->text);
@@ -219,7 +219,7 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     if (status == ADCGS_OK)
         adcgs_enc_diagnose(cli, decoder, r->scene, tells ? x.quality.psnr : (double)NAN, r->file, r->interrupts);
     if (status == ADCGS_OK && !x.target.met)
-        say_missed(cli, r, &x.target);
+        report_missed(cli, r, &x.target);
     adcgs_close(&decoder);
     return status;
 }

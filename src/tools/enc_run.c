@@ -127,7 +127,7 @@ static void look_at_footage(adcgs_enc_context *w)
         return;
     adcgs_progress_clear(&w->progress);
     adcgs_enc_diagnose_footage(w->progress.cli, w->t->scene, &w->t->stereo, &w->t->duplicates, w->t->pool, w->thumbnails,
-                               w->begins, &w->doubted);
+                               w->begins, &w->diagnosed);
     free_thumbnails(w);
 }
 
@@ -326,7 +326,7 @@ adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, con
     const int is_one_of_many = job->ranks && job->ranks->rank; /* the first rank reports for all */
     const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* live footage is not judged */
     adcgs_train_config config = job->config;
-    config.judges_poses = tells && !w->doubted; /* by the first part of a scene */
+    config.judges_poses = tells && !w->diagnosed; /* by the first part of a scene */
     ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &config, before, job->cpu, job->pool, error));
     if (!before && otherwise && !adcgs_params_equal(&w->t->f->params, &otherwise->params)) {
         adcgs_trainer_free(&w->t);

@@ -56,7 +56,7 @@ typedef struct adcgs_enc_context {
     adcgs_error log_error;
     double begins;    /* time in the scene at which the trained part begins */
     adcgs_thumbnail *thumbnails; /* until the footage has been checked; NULL: no check */
-    unsigned doubted; /* kinds of faults of footage that were reported */
+    unsigned diagnosed; /* kinds of faults of footage that were reported */
     int told_room;    /* 1: the space for images was reported; 2: also that it is not enough */
 } adcgs_enc_context;
 

@@ -95,8 +95,8 @@ static void put_means_back(adcgs_trainer *t)
 /* ---- View passes ---- */
 
 /** Runs the view passes first..end-1. *n: number of partial sums that result. */
-static adcgs_status look_at(adcgs_trainer *t, double progress, uint32_t first, uint32_t end, adcgs_tree_part *parts, int *n,
-                            adcgs_error *error)
+static adcgs_status run_passes(adcgs_trainer *t, double progress, uint32_t first, uint32_t end, adcgs_tree_part *parts, int *n,
+                               adcgs_error *error)
 {
     adcgs_train_stats stats;
     *n = 0;
@@ -118,7 +118,7 @@ static adcgs_status look_at_many(adcgs_trainer *t, double progress, adcgs_error 
     adcgs_tree_part parts[ADCGS_TREE_PARTS];
     const int rank = t->team ? t->team->rank : 0;
     int n;
-    ADCGS_TRY(look_at(t, progress, adcgs_share_place(t, rank), adcgs_share_place(t, rank + 1), parts, &n, error));
+    ADCGS_TRY(run_passes(t, progress, adcgs_share_place(t, rank), adcgs_share_place(t, rank + 1), parts, &n, error));
     if (t->team)
         ADCGS_TRY(adcgs_share(t, parts, n, error));
     else

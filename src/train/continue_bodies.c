@@ -94,7 +94,7 @@ static void turn(const double q[4], int back, const double x[3], double out[3])
  * Composes poses for the model's rest positions: to the state at the end of the previous segment, back to the found body's rest
  * pose, and on to the frame.
  */
-static void go_on_from(adcgs_stereo_body *body, uint32_t moments, const stand *s)
+static void go_on_from(adcgs_stereo_body *body, uint32_t frames, const stand *s)
 {
     const adcgs_stereo_pose first = body->pose[0];
     const double back[4] = { first.q[0], -first.q[1], -first.q[2], -first.q[3] };
@@ -103,7 +103,7 @@ static void go_on_from(adcgs_stereo_body *body, uint32_t moments, const stand *s
         away[a] = s->to[a] - body->pivot[a] - first.way[a];
     turn(first.q, 1, away, rest); /* offset of the centre from the pivot, in the body's rest pose */
     adcgs_rotation_multiply(back, s->q, since);
-    for (uint32_t m = 0; m < moments; m++) {
+    for (uint32_t m = 0; m < frames; m++) {
         adcgs_stereo_pose *p = &body->pose[m];
         double now[3], q[4];
         turn(p->q, 0, rest, now);

@@ -68,7 +68,8 @@ static int cell_of(const adcgs_fmodel *f, const float x[3], uint32_t pos[3])
     return inside;
 }
 
-static void grow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const adcgs_ranked *list, uint32_t n, cells *occupied)
+static void add_anchors(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const adcgs_ranked *list, uint32_t n,
+                        cells *occupied)
 {
     const float *const *mean = t->pass->primitives.mean;
     uint32_t i = 0;
@@ -85,7 +86,7 @@ static void grow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const a
 
 enum {
     MISSING_MOST = 512, /* maximum number of positions from residuals */
-    MOMENT_MOST = 256   /* maximum number of matched points */
+    TEMPORAL_POINTS_MAX = 256 /* maximum number of matched points */
 };
 
 static uint32_t nearest_anchor(const adcgs_fmodel *f, const uint32_t pos[3])
@@ -154,8 +155,8 @@ static void rest(const adcgs_trainer *t, const adcgs_stereo_point *point, float 
 }
 
 /** The same for points of a frame. Any free voxel will do, because neighbours may have other lifetimes. */
-static uint32_t sow_moments(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const adcgs_stereo_point **points,
-                            uint32_t n, cells *occupied)
+static uint32_t add_temporal_anchors(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const adcgs_stereo_point **points,
+                                     uint32_t n, cells *occupied)
 {
     uint32_t taken = 0;
     for (uint32_t i = 0; i < n && s->n < budget; i++) {
@@ -175,7 +176,7 @@ static uint32_t sow_moments(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budg
     return taken;
 }
 
-static void dress_moments(adcgs_trainer *t, const adcgs_stereo_point *const *points, uint32_t n)
+static void init_temporal_anchors(adcgs_trainer *t, const adcgs_stereo_point *const *points, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++) {
         adcgs_residual place = { .size = 4 * points[i]->size };
@@ -204,7 +205,7 @@ typedef struct workspace {
     cells occupied;
     adcgs_ranked *list;        /* [slots] */
     adcgs_residual *missing; /* [MISSING_MOST] */
-    const adcgs_stereo_point **moment; /* [MOMENT_MOST] points of frames with large errors */
+    const adcgs_stereo_point **temporal; /* [TEMPORAL_POINTS_MAX] points of frames with large errors */
 } workspace;
 
 static void workspace_clear(workspace *w)
@@ -213,7 +214,7 @@ static void workspace_clear(workspace *w)
     adcgs_free(NULL, w->occupied.key);
     adcgs_free(NULL, w->list);
     adcgs_free(NULL, w->missing);
-    adcgs_free(NULL, w->moment);
+    adcgs_free(NULL, w->temporal);
 }
 
 static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_t budget, adcgs_error *error)
@@ -226,8 +227,8 @@ static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_
     w->occupied = (cells){ adcgs_alloc(NULL, buckets, sizeof *w->occupied.key, error), buckets - 1 };
     w->list = adcgs_alloc(NULL, t->pass->primitives.n, sizeof *w->list, error);
     w->missing = adcgs_alloc(NULL, MISSING_MOST, sizeof *w->missing, error);
-    w->moment = adcgs_alloc(NULL, MOMENT_MOST, sizeof *w->moment, error);
-    if (w->occupied.key && w->list && w->missing && w->moment)
+    w->temporal = adcgs_alloc(NULL, TEMPORAL_POINTS_MAX, sizeof *w->temporal, error);
+    if (w->occupied.key && w->list && w->missing && w->temporal)
         return ADCGS_OK;
     workspace_clear(w);
     return adcgs_alloc_status(error);
@@ -257,7 +258,7 @@ static int leaves_gaps(const adcgs_trainer *t, double progress)
 adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const uint32_t budget = (uint32_t)adcgs_densify_budget(&t->config, progress);
-    uint32_t n_missing = 0, n_moment = 0;
+    uint32_t n_missing = 0, n_temporal = 0;
     workspace w;
     ADCGS_TRY(workspace_init(&w, t, budget, error));
     keep_anchors(t, &w);
@@ -265,20 +266,20 @@ adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error
     if (leaves_gaps(t, progress) && t->config.residual_densify)
         status = adcgs_residual_find(t, w.missing, MISSING_MOST, &n_missing, error);
     if (status == ADCGS_OK && t->config.params.spans && t->stereo.n_moving)
-        status = adcgs_temporal_densify_find(t, w.moment, MOMENT_MOST, &n_moment, error);
+        status = adcgs_temporal_densify_find(t, w.temporal, TEMPORAL_POINTS_MAX, &n_temporal, error);
     if (status == ADCGS_OK) {
-        n_moment = sow_moments(t, &w.next, w.next.n + (budget > w.next.n ? (budget - w.next.n) / 2 : 0), w.moment, n_moment,
-                               &w.occupied);
+        n_temporal = add_temporal_anchors(t, &w.next, w.next.n + (budget > w.next.n ? (budget - w.next.n) / 2 : 0), w.temporal,
+                                          n_temporal, &w.occupied);
         n_missing = sow(t, &w.next, budget, w.missing, n_missing, &w.occupied);
         adcgs_drop_floaters(t);
         adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE }); /* canonical positions */
-        grow(t, &w.next, budget, w.list, find_candidates(t, w.list), &w.occupied);
+        add_anchors(t, &w.next, budget, w.list, find_candidates(t, w.list), &w.occupied);
         t->decisions.most = ADCGS_MAX(t->decisions.most, w.next.n);
         status = adcgs_anchor_set_adopt(t, &w.next, error);
     }
     if (status == ADCGS_OK) {
         dress(t->f, w.missing, n_missing);
-        dress_moments(t, w.moment, n_moment);
+        init_temporal_anchors(t, w.temporal, n_temporal);
     }
     workspace_clear(&w);
     return status;

@@ -225,19 +225,19 @@ static int is_taken(uint32_t index, uint32_t views, uint32_t turn)
 adcgs_status adcgs_residual_find(adcgs_trainer *t, adcgs_residual *places, uint32_t most, uint32_t *n, adcgs_error *error)
 {
     look looks[VIEWS_MOST] = { { NULL, 0, 0, NULL, NULL, NULL } };
-    const float moment = t->views[t->curriculum.views[t->iteration % t->curriculum.n].index].t;
+    const float when = t->views[t->curriculum.views[t->iteration % t->curriculum.n].index].t;
     int count = 0;
     adcgs_status status = ADCGS_OK;
     rays *r = adcgs_alloc(NULL, 1, sizeof *r, error);
     *n = 0;
     if (!r)
         return adcgs_alloc_status(error);
-    adcgs_pass_forward(t->pass, t->f, moment, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_COARSE });
+    adcgs_pass_forward(t->pass, t->f, when, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_COARSE });
     uint32_t there = 0, seen = 0;
     for (uint32_t i = 0; i < t->n_views; i++)
-        there += t->views[i].t == moment;
+        there += t->views[i].t == when;
     for (uint32_t i = 0; i < t->n_views && status == ADCGS_OK; i++)
-        if (t->views[i].t == moment && is_taken(seen++, there, t->iteration))
+        if (t->views[i].t == when && is_taken(seen++, there, t->iteration))
             status = draw(t, &looks[count++], i, error);
     for (int i = 0; status == ADCGS_OK && count >= VIEWS_LEAST && i < count; i++)
         status = follow(looks, count, i, r, places + *n, ADCGS_MIN(most - *n, most / (uint32_t)count), n, error);

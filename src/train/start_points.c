@@ -63,7 +63,7 @@ typedef struct glimpse {
     double rgb[3]; /* mean colour over the covered views */
 } glimpse;
 
-static glimpse look_at(const sight *s, const double x[3])
+static glimpse observe_point(const sight *s, const double x[3])
 {
     glimpse g = { 0, 0, { 0, 0, 0 } };
     double world[3];
@@ -128,7 +128,7 @@ static int sees_points(const sight *s, uint32_t most)
     const uint32_t n = ADCGS_MIN(s->scene->points.n, most);
     double x[3];
     for (uint32_t i = 0; i < n; i++)
-        if (given_point(x, s, (uint32_t)((uint64_t)i * s->scene->points.n / n)) && look_at(s, x).seen)
+        if (given_point(x, s, (uint32_t)((uint64_t)i * s->scene->points.n / n)) && observe_point(s, x).seen)
             return 1;
     return 0;
 }
@@ -143,7 +143,7 @@ static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
         double x[3];
         if (!given_point(x, s, from))
             continue;
-        const glimpse seen = p->coloured ? (glimpse){ 0 } : look_at(s, x);
+        const glimpse seen = p->coloured ? (glimpse){ 0 } : observe_point(s, x);
         for (int a = 0; a < 3; a++) {
             c->x[c->n][a] = x[a];
             c->rgb[c->n][a] = p->coloured ? p->colour[from][a] / 255.0 : seen.rgb[a];
@@ -187,7 +187,7 @@ static void random_points(adcgs_start_points *c, const sight *s, const adcgs_ste
         random_place(x, seed, i);
         const int far = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] > NEAR_RADIUS * NEAR_RADIUS;
         const int need = (int)s->n / (far ? 10 : 4) > 1 ? (int)s->n / (far ? 10 : 4) : 1;
-        const glimpse g = look_at(s, x);
+        const glimpse g = observe_point(s, x);
         if (g.seen < need || g.covered * 2 < g.seen || adcgs_stereo_is_known(stereo, x))
             continue;
         for (int a = 0; a < 3; a++) {
@@ -213,7 +213,7 @@ static void add_matched(adcgs_start_points *c, const adcgs_stereo *found, const 
 }
 
 /** The matched frame nearest to the middle of time. */
-static float middle_moment(const adcgs_stereo *s)
+static float middle_frame_time(const adcgs_stereo *s)
 {
     float best = s->n_frames ? s->frame_time[0] : 0.5f;
     for (uint32_t i = 1; i < s->n_frames; i++)
@@ -277,7 +277,7 @@ static void matched_points(adcgs_start_points *c, const adcgs_stereo *found, uin
 {
     const uint32_t wanted = most > c->n ? (uint32_t)(MATCHED_SHARE * (most - c->n)) : 0, begin = c->n;
     const uint32_t moving = ADCGS_MIN((uint32_t)(MOVING_SHARE * most), found->n_moving);
-    const float middle = middle_moment(found);
+    const float middle = middle_frame_time(found);
     if (spans)
         add_all_that_moves(c, found, half, moving);
     for (uint32_t i = 0; !spans && i < found->n_moving && c->n < most; i++)

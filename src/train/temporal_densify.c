@@ -9,7 +9,7 @@
 #include <math.h>
 
 enum {
-    MOMENTS = 2,    /* frames per call */
+    FRAMES = 2,     /* frames per call */
     VIEWS_MOST = 8, /* maximum number of views of a frame */
     VIEWS_LEAST = 2 /* minimum number of views that contain a point */
 };
@@ -23,11 +23,11 @@ typedef struct batch {
     uint32_t *seen; /* [n] */
 } batch;
 
-static batch batch_of(const adcgs_stereo *s, float moment)
+static batch batch_of(const adcgs_stereo *s, float when)
 {
     batch b = { .n = 0 };
     for (uint32_t i = 0; i < s->n_moving; i++)
-        if (s->moving[i].t >= moment && s->moving[i].t <= moment) {
+        if (s->moving[i].t >= when && s->moving[i].t <= when) {
             b.point = b.n++ ? b.point : &s->moving[i];
         }
     return b;
@@ -56,12 +56,12 @@ static adcgs_status ask_view(adcgs_trainer *t, batch *b, uint32_t index, adcgs_e
     return ADCGS_OK;
 }
 
-static adcgs_status ask_moment(adcgs_trainer *t, batch *b, float moment, adcgs_error *error)
+static adcgs_status measure_frame(adcgs_trainer *t, batch *b, float when, adcgs_error *error)
 {
     uint32_t asked = 0;
-    adcgs_pass_forward(t->pass, t->f, moment, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(t->pass, t->f, when, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
     for (uint32_t i = 0; i < t->n_views && asked < VIEWS_MOST; i++)
-        if (fabsf(t->views[i].t - moment) < 1e-5f) {
+        if (fabsf(t->views[i].t - when) < 1e-5f) {
             ADCGS_TRY(ask_view(t, b, i, error));
             asked++;
         }
@@ -88,17 +88,17 @@ adcgs_status adcgs_temporal_densify_find(adcgs_trainer *t, const adcgs_stereo_po
 {
     const adcgs_stereo *s = &t->stereo;
     *n = 0;
-    for (int turn = 0; turn < MOMENTS && s->n_frames; turn++) {
-        const float moment = s->frame_time[adcgs_random64(t->config.seed, 4000 + (uint64_t)turn, t->iteration) % s->n_frames];
-        batch b = batch_of(s, moment);
+    for (int turn = 0; turn < FRAMES && s->n_frames; turn++) {
+        const float when = s->frame_time[adcgs_random64(t->config.seed, 4000 + (uint64_t)turn, t->iteration) % s->n_frames];
+        batch b = batch_of(s, when);
         b.gain = adcgs_alloc(NULL, b.n + 1, sizeof *b.gain, error);
         b.seen = adcgs_alloc(NULL, b.n + 1, sizeof *b.seen, error);
         adcgs_ranked *list = adcgs_alloc(NULL, b.n + 1, sizeof *list, error);
         adcgs_status status = b.gain && b.seen && list ? ADCGS_OK : adcgs_alloc_status(error);
         if (status == ADCGS_OK && b.n)
-            status = ask_moment(t, &b, moment, error);
+            status = measure_frame(t, &b, when, error);
         if (status == ADCGS_OK)
-            *n += choose(&b, list, points + *n, most / MOMENTS);
+            *n += choose(&b, list, points + *n, most / FRAMES);
         adcgs_free(NULL, b.gain);
         adcgs_free(NULL, b.seen);
         adcgs_free(NULL, list);

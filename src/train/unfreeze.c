@@ -10,7 +10,7 @@
 
 enum {
     TIMES = 3,        /* number of tests in a run */
-    MOMENTS = 16,     /* maximum number of frames that are tested */
+    FRAMES_MAX = 16,  /* maximum number of frames that are tested */
     CAMERAS = 4,      /* maximum number of views of each */
     ANCHOR_BITS = 180 /* expected bits of an anchor that is sent again */
 };
@@ -19,34 +19,34 @@ enum {
 #define WORTH 4.0     /* ratio of the actual decrease of the loss to the decrease of squared errors */
 
 /** Residuals and coverage of each anchor in some frames, the earliest first. */
-typedef struct moments {
+typedef struct frame_errors {
     uint32_t n;            /* number of frames */
     size_t anchors;
-    float views[MOMENTS];  /* number of views used */
+    float views[FRAMES_MAX]; /* number of views used */
     float (*missing)[3];   /* [n][anchors] sums over pixels */
     float *pixels;         /* [n][anchors] */
-} moments;
+} frame_errors;
 
-static void moments_clear(moments *m)
+static void frame_errors_clear(frame_errors *m)
 {
     adcgs_free(NULL, m->missing);
     adcgs_free(NULL, m->pixels);
 }
 
-static adcgs_status moments_init(moments *m, const adcgs_fmodel *f, adcgs_error *error)
+static adcgs_status frame_errors_init(frame_errors *m, const adcgs_fmodel *f, adcgs_error *error)
 {
     m->n = 0;
     m->anchors = f->n;
-    m->missing = adcgs_alloc(NULL, MOMENTS * m->anchors, sizeof *m->missing, error);
-    m->pixels = adcgs_alloc(NULL, MOMENTS * m->anchors, sizeof *m->pixels, error);
+    m->missing = adcgs_alloc(NULL, FRAMES_MAX * m->anchors, sizeof *m->missing, error);
+    m->pixels = adcgs_alloc(NULL, FRAMES_MAX * m->anchors, sizeof *m->pixels, error);
     if (m->missing && m->pixels)
         return ADCGS_OK;
-    moments_clear(m);
+    frame_errors_clear(m);
     return adcgs_alloc_status(error);
 }
 
 /** Adds a view's residual, distributed over the anchors that contribute. */
-static adcgs_status add_view(adcgs_trainer *t, moments *m, uint32_t index, adcgs_error *error)
+static adcgs_status add_view(adcgs_trainer *t, frame_errors *m, uint32_t index, adcgs_error *error)
 {
     const adcgs_train_view *v = &t->views[index];
     const size_t values = 3 * (size_t)v->view.width * (size_t)v->view.height;
@@ -71,7 +71,7 @@ static adcgs_status add_view(adcgs_trainer *t, moments *m, uint32_t index, adcgs
 }
 
 /** Adds a frame, with some of its views. */
-static adcgs_status add_moment(adcgs_trainer *t, moments *m, uint32_t index, adcgs_error *error)
+static adcgs_status add_frame(adcgs_trainer *t, frame_errors *m, uint32_t index, adcgs_error *error)
 {
     const float at = t->views[index].t;
     uint32_t asked = 0;
@@ -92,9 +92,9 @@ static int ascending(const void *a, const void *b)
 }
 
 /** Residual at an anchor in a frame, in the channel where it is largest; 0 if coverage is too low. */
-static float missing_at(const moments *m, uint32_t moment, uint32_t anchor)
+static float missing_at(const frame_errors *m, uint32_t frame, uint32_t anchor)
 {
-    const size_t at = moment * m->anchors + anchor;
+    const size_t at = frame * m->anchors + anchor;
     float off = 0;
     for (int c = 0; m->pixels[at] >= SEEN && c < 3; c++)
         off = fmaxf(off, fabsf(m->missing[at][c]) / m->pixels[at]);
@@ -102,12 +102,12 @@ static float missing_at(const moments *m, uint32_t moment, uint32_t anchor)
 }
 
 /** The same minus the residual in the earliest frame, which the previous segment has trained: its errors are not new. */
-static float change_at(const moments *m, uint32_t moment, uint32_t anchor)
+static float change_at(const frame_errors *m, uint32_t frame, uint32_t anchor)
 {
-    const size_t at = moment * m->anchors + anchor;
+    const size_t at = frame * m->anchors + anchor;
     float off = 0;
     if (m->pixels[anchor] < SEEN)
-        return missing_at(m, moment, anchor);
+        return missing_at(m, frame, anchor);
     for (int c = 0; m->pixels[at] >= SEEN && c < 3; c++)
         off = fmaxf(off, fabsf(m->missing[at][c] / m->pixels[at] - m->missing[anchor][c] / m->pixels[anchor]));
     return off;
@@ -119,10 +119,10 @@ typedef struct verdict {
 } verdict;
 
 /** For static anchors, a residual counts only if it was not present in the earliest frame. */
-static verdict judge(const moments *m, uint32_t anchor, int moves)
+static verdict judge(const frame_errors *m, uint32_t anchor, int moves)
 {
     verdict v = { 0, 0, 0 };
-    float off[MOMENTS];
+    float off[FRAMES_MAX];
     uint32_t n = 0;
     for (uint32_t i = 1; i < m->n; i++) {
         const float pixels = m->pixels[i * m->anchors + anchor], now = missing_at(m, i, anchor);
@@ -147,7 +147,7 @@ static int is_worth(const adcgs_trainer *t, float missing, float pixels)
 }
 
 /** Unfreezes static or moving anchors. *idle: nothing moves, and nothing has changed in any frame. */
-static void choose(adcgs_trainer *t, const moments *m, int moving, int *idle)
+static void choose(adcgs_trainer *t, const frame_errors *m, int moving, int *idle)
 {
     adcgs_fmodel *f = t->f;
     *idle = 1;
@@ -169,21 +169,21 @@ static uint32_t earliest(const adcgs_trainer *t)
 
 static adcgs_status release(adcgs_trainer *t, int moving, int *idle, adcgs_error *error)
 {
-    const uint32_t n = t->n_views < MOMENTS ? t->n_views : MOMENTS;
-    moments m;
-    ADCGS_TRY(moments_init(&m, t->f, error));
+    const uint32_t n = t->n_views < FRAMES_MAX ? t->n_views : FRAMES_MAX;
+    frame_errors m;
+    ADCGS_TRY(frame_errors_init(&m, t->f, error));
     t->pass->pull = NULL;
-    adcgs_status status = add_moment(t, &m, earliest(t), error);
+    adcgs_status status = add_frame(t, &m, earliest(t), error);
     for (uint32_t i = 1; status == ADCGS_OK && i < n; i++)
-        status = add_moment(t, &m, (uint32_t)(((uint64_t)2 * i + 1) * t->n_views / (2 * n)), error);
+        status = add_frame(t, &m, (uint32_t)(((uint64_t)2 * i + 1) * t->n_views / (2 * n)), error);
     if (status == ADCGS_OK)
         choose(t, &m, moving, idle);
-    moments_clear(&m);
+    frame_errors_clear(&m);
     return status;
 }
 
 /** Static anchors are tested before training disturbs the render; moving anchors, once motion has been tracked. */
-static double moment_of(const adcgs_train_config *c, int time)
+static double test_progress(const adcgs_train_config *c, int time)
 {
     const double from = (double)c->curriculum_until, until = (double)c->densify_until;
     return time == 0 ? 0 : from + (until - from) * (time - 1) / (TIMES - 1);
@@ -192,7 +192,7 @@ static double moment_of(const adcgs_train_config *c, int time)
 adcgs_status adcgs_unfreeze_step(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     int idle = 0;
-    if (!t->f->follows || t->unfreeze_tests >= TIMES || progress < moment_of(&t->config, t->unfreeze_tests))
+    if (!t->f->follows || t->unfreeze_tests >= TIMES || progress < test_progress(&t->config, t->unfreeze_tests))
         return ADCGS_OK;
     ADCGS_TRY(release(t, t->unfreeze_tests > 0, &idle, error));
     if (idle && t->unfreeze_tests == 0) /* nothing to train: the run is finished */

@@ -27,7 +27,7 @@ static uint32_t stretch_of(void *user, double time)
 }
 
 /** Processes all available frames. */
-static adcgs_status take(adcgs_live_camera *camera, const adcgs_live_limits *limits, adcgs_error *error)
+static adcgs_status take_frames(adcgs_live_camera *camera, const adcgs_live_limits *limits, adcgs_error *error)
 {
     adcgs_status status = ADCGS_OK;
     for (int progress = 1; status == ADCGS_OK && progress && camera->next < FRAMES_MOST;) {
@@ -67,12 +67,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     data += size > 0;
     write_outside_file(video, data, first);
     adcgs_live_camera_init(&camera, &source, 0);
-    adcgs_status status = take(&camera, &limits, &error);
+    adcgs_status status = take_frames(&camera, &limits, &error);
     check(status, &error);
     write_outside_file(video, data, bytes); /* the same file, now longer */
     limits.is_end = 1;
     if (status == ADCGS_OK)
-        check(take(&camera, &limits, &error), &error);
+        check(take_frames(&camera, &limits, &error), &error);
     remove_all(&camera, &limits, video);
     adcgs_live_camera_clear(&camera);
     return 0;

@@ -57,7 +57,7 @@ static inline adcgs_status write_splats(const adcgs_splats *splats, const char *
 }
 
 /** Loads a file of the folder; the caller frees it. */
-static inline uint8_t *load(const char *name, size_t *bytes)
+static inline uint8_t *load_file(const char *name, size_t *bytes)
 {
     uint8_t *data = NULL;
     expect_good(adcgs_file_load(&data, bytes, in(name), 1 << 24, &error));

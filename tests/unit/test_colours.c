@@ -101,7 +101,7 @@ static int close_scene(void **state)
     return 0;
 }
 
-static float *load(uint32_t view)
+static float *load_view(uint32_t view)
 {
     float *rgb;
     expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TRAIN][view], 1, &rgb, NULL, &error));
@@ -118,7 +118,7 @@ static void test_linear(void **state)
 {
     put_exr("plain.exr", 0, NULL, 0.0f);
     open_frames(FRAMES(FRAME("plain.exr") "," FRAME("plain.exr")));
-    float *rgb = load(0);
+    float *rgb = load_view(0);
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < PIXELS; i++)
             expect_near(rgb[c * PIXELS + i], curve(level(c, i % WIDTH, i / WIDTH)));
@@ -132,10 +132,10 @@ static void test_stops(void **state)
     int known = 0, kept = 0, cut = 0;
     put_levels("even.png", 8, 3, 15);
     open_frames(FRAMES(FRAME("even.png") "," FRAME("even.png")));
-    float *const taken = load(0);
+    float *const taken = load_view(0);
     for (int s = 0; s < 2; s++) {
         memcpy(scene->views[ADCGS_SPLIT_TRAIN][0].stops, stops[s], sizeof stops[s]);
-        float *const rgb = load(0);
+        float *const rgb = load_view(0);
         for (int i = 0; i < PIXELS; i++) {
             const int burnt = !s && (taken[i] >= 0.98f || taken[PIXELS + i] >= 0.98f || taken[2 * PIXELS + i] >= 0.98f);
             known += !burnt && !s;
@@ -160,7 +160,7 @@ static void test_linear_alpha(void **state)
     put_exr("alpha.exr", 1, NULL, 0.0f);
     open_frames(FRAMES(FRAME("alpha.exr") "," FRAME("alpha.exr")));
     assert_true(scene->has_alpha && scene->background[0] == 1.0f);
-    float *rgb = load(0);
+    float *rgb = load_view(0);
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < PIXELS; i++) {
             const double a = alpha_of(i % WIDTH, i / WIDTH);
@@ -174,7 +174,7 @@ static void test_labelled(void **state)
 {
     put_levels("own.exr", 0, 3, 1000);
     open_frames(FRAMES(FRAME("own.exr") "," FRAME("own.exr")));
-    float *rgb = load(0);
+    float *rgb = load_view(0);
     for (uint32_t c = 0; c < 3; c++)
         for (uint32_t i = 0; i < PIXELS; i++)
             assert_true(rgb[c * PIXELS + i] == (float)((3 * i + c) * 7919u % 1001u) / 1000.0f);
@@ -197,7 +197,7 @@ static void test_sixteen(void **state)
     expect_good(adcgs_image_store_load(&pictures, scene, &config, pool, &error));
     for (uint32_t v = 0; v < ADCGS_COUNTOF(names); v++) {
         const uint32_t divisor = v % 2 ? 65535 : 255;
-        float *rgb = load(v), kept[3 * PIXELS];
+        float *rgb = load_view(v), kept[3 * PIXELS];
         expect_good(adcgs_image_store_get(pictures, v, kept, &error));
         for (uint32_t c = 0; c < 3; c++)
             for (uint32_t i = 0; i < PIXELS; i++) {
@@ -221,7 +221,7 @@ static void test_sixteen_alpha(void **state)
     put_text("transforms.json", FRAMES(FRAME("a.png") "," FRAME("a.png") "," FRAME("a.tif")));
     expect_good(adcgs_scene_open(&scene, folder, &options, &error));
     for (uint32_t v = 0; v < 2; v++) {
-        float *rgb = load(v);
+        float *rgb = load_view(v);
         for (uint32_t c = 0; c < 3; c++)
             for (uint32_t i = 0; i < PIXELS; i++) {
                 const double a = (double)((4 * i + 3) * 7919u % 65536u) / 65535, b = (double)options.background[c];

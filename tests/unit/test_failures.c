@@ -38,7 +38,7 @@ static int setup(void **state)
     return 0;
 }
 
-static shown look(adcgs_decoder *d)
+static shown state_of(adcgs_decoder *d)
 {
     shown s = { .segments = 0 };
     adcgs_info info;
@@ -91,10 +91,10 @@ static int push_chunks(const uint8_t *data, size_t size)
     adcgs_found_chunk c;
     adcgs_status status = push(d, data, ADCGS_SIGNATURE_BYTES);
     for (size_t at = ADCGS_SIGNATURE_BYTES, next = at; status == ADCGS_OK && adcgs_next_chunk(data, size, &next, &c); at = next) {
-        const shown before = look(d);
+        const shown before = state_of(d);
         status = push(d, data + at, next - at);
         if (status != ADCGS_OK) {
-            const shown after = look(d), again = look(d);
+            const shown after = state_of(d), again = state_of(d);
             char name[5] = "";
             adcgs_store_le32((uint8_t *)name, c.type);
             check_same(&before, &after, name);
@@ -143,7 +143,7 @@ static void test_no_memory(void **state)
             push(free_one, f->bytes.data + at, next - at);
             at = next;
         }
-        const shown now = look(d), expected = look(free_one);
+        const shown now = state_of(d), expected = state_of(free_one);
         for (int i = 0; status != ADCGS_OK && i < TIMES; i++)
             if (now.status[i] == ADCGS_OK)
                 assert_memory_equal(now.digest[i], expected.digest[i], sizeof now.digest[i]);
@@ -183,7 +183,7 @@ static void test_bytes_that_change(void **state)
     uint8_t *other = malloc(size);
     source s = { f->bytes.data };
     adcgs_decoder *d = open_at(&s, size);
-    const shown expected = look(d);
+    const shown expected = state_of(d);
     adcgs_found_chunk c;
     int failed = 0;
     assert_non_null(other);
@@ -194,12 +194,12 @@ static void test_bytes_that_change(void **state)
             if (kind)
                 adcgs_repair_stream(other, size, 0);
             s.data = other;
-            const shown then = look(d);
+            const shown then = state_of(d);
             assert_int_equal(then.segments, SEGMENTS);
             failed += memcmp(&then, &expected, sizeof then) != 0;
             s.data = f->bytes.data;
-            (void)look(d); /* changed bytes with right checksums may still be in memory */
-            const shown now = look(d);
+            (void)state_of(d); /* changed bytes with right checksums may still be in memory */
+            const shown now = state_of(d);
             assert_memory_equal(now.digest, expected.digest, sizeof now.digest);
         }
     assert_in_range(failed, 10, 1000);
@@ -215,7 +215,7 @@ static void test_index_of_other_times(void **state)
     uint8_t *other = malloc(size);
     source s = { f->bytes.data };
     adcgs_decoder *d = open_at(&s, size);
-    const shown expected = look(d);
+    const shown expected = state_of(d);
     adcgs_close(&d);
     assert_non_null(other);
     for (size_t entry = 0; entry < SEGMENTS; entry++)
@@ -225,7 +225,7 @@ static void test_index_of_other_times(void **state)
             adcgs_repair_stream(other, size, 0);
             s.data = other;
             d = open_at(&s, size);
-            const shown now = look(d);
+            const shown now = state_of(d);
             assert_memory_equal(now.digest, expected.digest, sizeof now.digest);
             assert_memory_equal(now.status, expected.status, sizeof now.status);
             adcgs_close(&d);

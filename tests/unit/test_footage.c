@@ -36,7 +36,7 @@ static double draw(void)
 }
 
 /* An image by a camera, in shades of its own (0.3 to 0.6, made brighter by the last argument) and plain tints. */
-static adcgs_thumbnail *take(int camera, double time, double brighter)
+static adcgs_thumbnail *add_view(int camera, double time, double brighter)
 {
     adcgs_scene_view *const view = &film.views[film.n];
     adcgs_thumbnail *const thumbnail = &film.thumbnails[film.n];
@@ -99,20 +99,20 @@ static void of_little_nothing_is_said(void **state)
     for (int n = 1; n < 8; n++) { /* one camera with a few identical images; then several at one time */
         begin();
         for (int i = 0; i < n; i++)
-            take(0, i, 0.0);
+            add_view(0, i, 0.0);
         expect_silence(all);
         begin();
         for (int i = 0; i < n; i++)
-            take(0, 3.0, 0.02 * i * i);
+            add_view(0, 3.0, 0.02 * i * i);
         expect_silence(all);
         begin();
         for (int i = 0; i < n; i++) /* one image per camera */
-            take(i % CAMERAS, i, 0.0);
+            add_view(i % CAMERAS, i, 0.0);
         expect_silence(all);
     }
     begin();
     for (int i = 0; i < MOST; i++) { /* all cameras see the same static scene */
-        take(0, i / CAMERAS, 0.0);
+        add_view(0, i / CAMERAS, 0.0);
         film.views[i].camera.fx = 50.0 + i % CAMERAS;
     }
     expect_silence(all);
@@ -123,7 +123,7 @@ static void what_is_not_known_says_nothing(void **state)
     (void)state;
     begin();
     for (int i = 0; i < MOST; i++) {
-        adcgs_thumbnail *const thumbnail = take(i % CAMERAS, i / CAMERAS, draw() * 0.1);
+        adcgs_thumbnail *const thumbnail = add_view(i % CAMERAS, i / CAMERAS, draw() * 0.1);
         for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
             if (i % 3 == 0 || k >= 31)
                 thumbnail->cells[k] = NAN;
@@ -144,7 +144,7 @@ static void film_with_gap(double gap)
 {
     begin();
     for (int i = 0; i < 20; i++)
-        take(0, i < 8 ? i : i - 1 + gap, 0.0);
+        add_view(0, i < 8 ? i : i - 1 + gap, 0.0);
 }
 
 static void gaps_are_found(void **state)
@@ -161,14 +161,14 @@ static void gaps_are_found(void **state)
         double time = 0.0;
         begin();
         for (int i = 0; i <= 20; i++, time += i <= near ? 1.0 : 4.0)
-            take(0, time, 0.0);
+            add_view(0, time, 0.0);
         fault = find('g');
         assert_int_equal(fault.cameras, near == 12);
         assert_true(near != 12 || fault.count == 8);
     }
     begin(); /* six images; then five of one static camera */
     for (int i = 0; i < 6; i++)
-        take(0, i < 3 ? i : i + 4, 0.0);
+        add_view(0, i < 3 ? i : i + 4, 0.0);
     assert_true(find('g').cameras == 1 && find('g').size == 4.0);
     film.n = 5;
     expect_silence("g");
@@ -180,12 +180,12 @@ static void gaps_of_all_are_the_scenes(void **state)
     begin(); /* cameras in turn: each takes every third frame, and none takes 21 to 23 */
     for (int i = 0; i < MOMENTS; i++)
         if (i <= 20 || i >= 24)
-            take(i % 3, i, 0.0);
+            add_view(i % 3, i, 0.0);
     expect_silence("g"); /* the gap is at most 1.5 times a camera's step */
     begin();
     for (int i = 0; i < MOMENTS; i++)
         if (i <= 20 || i >= 26)
-            take(i % 3, i, 0.0);
+            add_view(i % 3, i, 0.0);
     const adcgs_fault fault = find('g');
     assert_true(fault.cameras == 3 && fault.of == 3 && !fault.path && fault.size == 5.0);
     assert_true(fault.from == 20.0 && fault.to == 26.0);
@@ -200,7 +200,7 @@ static void what_was_put_aside_is_no_gap(void **state)
     (void)state;
     begin();
     for (int i = 0; i < 20; i++) {
-        take(0, i < 8 ? i : i + 4, 0.0);
+        add_view(0, i < 8 ? i : i + 4, 0.0);
         film.views[i].camera.fx = 50.0 + 0.1 * i;
     }
     scene.n_views[ADCGS_SPLIT_TRAIN] = film.n;
@@ -223,7 +223,7 @@ static void film_twice(int pictures, double by, int copies)
     for (int i = 0; i < 24; i++) {
         const int at = i % 8, again = i / 8 < pictures && at >= 4 && at < 4 + copies;
         shown += again ? by * step : step;
-        take(0, i, shown);
+        add_view(0, i, shown);
     }
 }
 
@@ -273,7 +273,7 @@ static void what_turns_may_rest(void **state)
     for (int back = 0; back < 2; back++) {
         begin();
         for (int i = 0; i < 24; i++)
-            take(0, i, 0.01 * (i % 8 < 5 ? i % 8 : back ? 9 - i % 8 : i % 8 - 1));
+            add_view(0, i, 0.01 * (i % 8 < 5 ? i % 8 : back ? 9 - i % 8 : i % 8 - 1));
         assert_int_equal(find('d').cameras, !back);
     }
 }
@@ -292,7 +292,7 @@ static void doubled_pictures_of_one_that_moves(void **state)
     expect_silence(all);
     begin(); /* a random camera pose for each image, as in D-NeRF, and only two copies */
     for (int i = 0; i < 40; i++) {
-        take(i == 11 || i == 22 ? i - 1 : i, i, 0.0);
+        add_view(i == 11 || i == 22 ? i - 1 : i, i, 0.0);
         film.views[i].camera.fx = 50.0 + 0.1 * i;
     }
     assert_int_equal(find('d').count, 2);
@@ -306,7 +306,7 @@ static void film_in_turn(int at, double off, int cameras)
     begin();
     for (int i = 0; i < MOMENTS; i++) {
         const int copy = i == at, of = copy ? i - 1 : i;
-        take(of % cameras, i, 0.002 * of + off * copy);
+        add_view(of % cameras, i, 0.002 * of + off * copy);
         film.views[i].camera.fx = 50.0 + i % cameras;
     }
 }
@@ -340,7 +340,7 @@ static void what_all_see_is_no_copy(void **state)
     (void)state;
     begin();
     for (int i = 0; i < MOMENTS; i++) {
-        take(0, i, 0.0);
+        add_view(0, i, 0.0);
         film.views[i].camera.fx = 50.0 + i % 2;
         for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
             film.thumbnails[i].cells[k] = (float)(0.3 + 0.2 * sin(k * (i / 2 + 1)));
@@ -363,7 +363,7 @@ static void film_light(adcgs_thumbnail_light light, double size, int at, int unt
 {
     begin();
     for (int i = 0; i < 3 * 16; i++) {
-        adcgs_thumbnail *const thumbnail = take(i % 3, i / 3, 0.0);
+        adcgs_thumbnail *const thumbnail = add_view(i % 3, i / 3, 0.0);
         if (i % 3 >= cameras || i / 3 < at || i / 3 >= until)
             continue;
         for (int k = 0; k < ADCGS_THUMBNAIL_CELLS; k++)
@@ -528,7 +528,7 @@ static void film_clocks(int cameras, int moments, int late, int of, int jerks)
         for (int c = 0; c < cameras; c++) {
             const double step = jerk[16 + i - (c < of ? late : 0)] * (1.0 + 0.2 * c);
             shown[c] += shown[c] > 0.05 ? -step : step;
-            take(c, i, shown[c]);
+            add_view(c, i, shown[c]);
         }
 }
 
@@ -570,7 +570,7 @@ static void what_repeats_tells_no_clock(void **state)
     begin();
     for (int i = 0; i < 40; i++)
         for (int c = 0; c < 4; c++)
-            take(c, i, (i + (c == 0)) % 4 < 2 ? 0.0 : 0.05);
+            add_view(c, i, (i + (c == 0)) % 4 < 2 ? 0.0 : 0.05);
     expect_silence("c");
 }
 
@@ -590,7 +590,7 @@ static void film_anything(uint32_t seed, int cameras, int turns, int moves)
     for (int i = 0; i < MOMENTS; i++)
         for (int k = 0; k < cameras / turns; k++) {
             const int c = (i + k * turns) % cameras;
-            adcgs_thumbnail *const thumbnail = take(moves ? 0 : c, i, 0.0);
+            adcgs_thumbnail *const thumbnail = add_view(moves ? 0 : c, i, 0.0);
             film.views[film.n - 1].camera.fx = 50.0 + (moves ? 0.01 * i : c);
             for (int b = 0; b < 4; b++) {
                 const double t = (double)i / MOMENTS, *w = way[b];

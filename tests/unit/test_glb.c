@@ -33,7 +33,7 @@ static void test_round_trip(void **state)
     adcgs_splats s = random_splats(1000, 30.0, -500.0, 3), back;
     size_t bytes;
     expect_good(write_splats(&s, in("w.glb")));
-    uint8_t *const file = load("w.glb", &bytes);
+    uint8_t *const file = load_file("w.glb", &bytes);
     assert_true(!memcmp(file, "glTF\2\0\0\0", 8) && adcgs_load_le32(file + 8) == bytes && bytes % 4 == 0);
     assert_memory_equal(file + 16, "JSON", 4);
     const size_t text = adcgs_load_le32(file + 12);
@@ -285,7 +285,7 @@ static void test_packed(void **state)
     size_t bytes;
     make_splats(&s);
     expect_good(write_splats(&s, in("a.spz")));
-    uint8_t *const spz = load("a.spz", &bytes);
+    uint8_t *const spz = load_file("a.spz", &bytes);
     expect_good(adcgs_splats_read(&plain, in("a.spz"), &error));
     expect_good(adcgs_splats_move(&plain, place, "a.spz", &error));
     for (int old = 0; old < 2; old++) {

@@ -46,8 +46,8 @@ static int teardown(void **state)
     return remove_folder(state);
 }
 
-static adcgs_status load(adcgs_image_store **pictures, uint64_t memory, int divide, adcgs_image_store_progress progress,
-                         void *user)
+static adcgs_status load_store(adcgs_image_store **pictures, uint64_t memory, int divide, adcgs_image_store_progress progress,
+                               void *user)
 {
     const adcgs_image_store_config config = {ADCGS_SPLIT_TRAIN, divide, memory, progress, user, NULL};
     return adcgs_image_store_load(pictures, scene, &config, pool, &error);
@@ -60,7 +60,7 @@ static void test_budgets(void **state)
     for (size_t i = 0; i < ADCGS_COUNTOF(budgets); i++) {
         adcgs_image_store *pictures;
         uint64_t memory, file;
-        assert_int_equal(load(&pictures, budgets[i], 1, NULL, NULL), ADCGS_OK);
+        assert_int_equal(load_store(&pictures, budgets[i], 1, NULL, NULL), ADCGS_OK);
         adcgs_image_store_size(pictures, &memory, &file);
         assert_int_equal(memory + file, VALUES * (3 * 1 + 4));
         assert_true(i == 0 ? file == 0 : memory <= budgets[i]);
@@ -83,8 +83,8 @@ static void test_budgets(void **state)
 static void test_reduced(void **state)
 {
     adcgs_image_store *held, *filed;
-    assert_int_equal(load(&held, 0, 2, NULL, NULL), ADCGS_OK);
-    assert_int_equal(load(&filed, 1, 2, NULL, NULL), ADCGS_OK);
+    assert_int_equal(load_store(&held, 0, 2, NULL, NULL), ADCGS_OK);
+    assert_int_equal(load_store(&filed, 1, 2, NULL, NULL), ADCGS_OK);
     for (uint32_t view = 0; view < TRAIN; view++) {
         float a[3 * 4 * 3], b[3 * 4 * 3], *want;
         assert_int_equal(adcgs_image_store_get(held, view, a, &error), ADCGS_OK);
@@ -105,7 +105,7 @@ static void test_put(void **state)
     for (uint64_t memory = 0; memory < 2; memory++) {
         adcgs_image_store *pictures;
         float put[VALUES], got[VALUES];
-        assert_int_equal(load(&pictures, memory, 1, NULL, NULL), ADCGS_OK);
+        assert_int_equal(load_store(&pictures, memory, 1, NULL, NULL), ADCGS_OK);
         for (int wide = 1; wide >= 0; wide--) {
             for (int i = 0; i < VALUES; i++)
                 put[i] = (float)((wide ? 1000 : 1) * i) / 255.0f;
@@ -134,10 +134,10 @@ static void test_progress(void **state)
 {
     adcgs_image_store *pictures;
     uint32_t last = 0;
-    assert_int_equal(load(&pictures, 0, 1, count, &last), ADCGS_OK);
+    assert_int_equal(load_store(&pictures, 0, 1, count, &last), ADCGS_OK);
     assert_int_equal(last, TRAIN);
     adcgs_image_store_free(&pictures);
-    expect_error(load(&pictures, 0, 1, stop, NULL), ADCGS_ERR_IO, "interrupted", "pictures");
+    expect_error(load_store(&pictures, 0, 1, stop, NULL), ADCGS_ERR_IO, "interrupted", "pictures");
     assert_null(pictures);
 }
 
@@ -159,7 +159,7 @@ static void use_tmpdir(const char *name)
 static void expect_same_as_kept(const adcgs_image_store *pictures, int divide)
 {
     adcgs_image_store *kept;
-    assert_int_equal(load(&kept, 0, divide, NULL, NULL), ADCGS_OK);
+    assert_int_equal(load_store(&kept, 0, divide, NULL, NULL), ADCGS_OK);
     for (uint32_t view = 0; view < TRAIN; view++) {
         const adcgs_camera *const c = adcgs_image_store_camera(kept, view);
         float a[VALUES], b[VALUES];
@@ -178,7 +178,7 @@ static void test_no_room(void **state)
         adcgs_image_store *pictures;
         const char *why;
         use_tmpdir(in("nowhere"));
-        assert_int_equal(load(&pictures, 1, divide, NULL, NULL), ADCGS_OK);
+        assert_int_equal(load_store(&pictures, 1, divide, NULL, NULL), ADCGS_OK);
         use_tmpdir(NULL);
         assert_int_equal(adcgs_image_store_decoded_again(pictures, &why), TRAIN);
         assert_string_equal(why, strerror(ENOENT));
@@ -200,7 +200,7 @@ static void test_limited_room(void **state)
     limit = before;
     limit.rlim_cur = VALUES + 1;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
-    const adcgs_status status = load(&pictures, VALUES, 1, NULL, NULL);
+    const adcgs_status status = load_store(&pictures, VALUES, 1, NULL, NULL);
     assert_int_equal(adcgs_image_store_estimate(&need, scene, &config, &error), ADCGS_OK);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     assert_int_equal(status, ADCGS_OK);
@@ -219,7 +219,7 @@ static void test_missing_picture(void **state)
 {
     adcgs_image_store *pictures;
     unlink(in("b.ppm"));
-    expect_error(load(&pictures, 0, 1, NULL, NULL), ADCGS_ERR_IO, "b.ppm", "");
+    expect_error(load_store(&pictures, 0, 1, NULL, NULL), ADCGS_ERR_IO, "b.ppm", "");
     assert_null(pictures);
 }
 

@@ -56,7 +56,7 @@ static float number(kind k, uint64_t *state)
     return k == ORDINARY ? (float)x : k == WIDE ? (float)(x * exp(8 * scene_normal(state))) : extreme(state);
 }
 
-static float *take(call *c, size_t n, int output)
+static float *take_buffer(call *c, size_t n, int output)
 {
     const size_t size = (n + 15) / 16 * 16, whole = size + 2 * GUARD;
     float *const block = adcgs_alloc(NULL, whole, sizeof *block, NULL);
@@ -72,7 +72,7 @@ static float *take(call *c, size_t n, int output)
 /** n numbers of a kind. */
 static float *given_of(call *c, size_t n, kind k)
 {
-    float *const p = take(c, n, 0);
+    float *const p = take_buffer(c, n, 0);
     for (size_t i = 0; i < n; i++)
         p[i] = number(k, &c->state);
     return p;
@@ -86,7 +86,7 @@ static float *given(call *c, size_t n)
 /** One number, n times. */
 static float *constant(call *c, size_t n, float x)
 {
-    float *const p = take(c, n, 0);
+    float *const p = take_buffer(c, n, 0);
     for (size_t i = 0; i < n; i++)
         p[i] = x;
     return p;
@@ -95,12 +95,12 @@ static float *constant(call *c, size_t n, float x)
 /** An output that the kernel writes completely, or adds to if it has a start. */
 static float *output(call *c, size_t n)
 {
-    return take(c, n, 1);
+    return take_buffer(c, n, 1);
 }
 
 static float *added(call *c, size_t n)
 {
-    float *const p = take(c, n, 1);
+    float *const p = take_buffer(c, n, 1);
     for (size_t i = 0; i < n; i++)
         p[i] = number(c->kind, &c->state);
     return p;
@@ -136,7 +136,7 @@ static adcgs_movers movers_of(const call *c)
 
 static int32_t *flags(call *c)
 {
-    int32_t *const p = (void *)take(c, L, 0);
+    int32_t *const p = (void *)take_buffer(c, L, 0);
     for (int i = 0; i < L; i++)
         p[i] = scene_uniform(&c->state) < 0.7;
     return p;

@@ -294,7 +294,7 @@ static void test_flat(void **state)
 /* ---- Images ---- */
 
 /** A smooth scene: no feature is smaller than a tenth of the focal length. */
-static double look(double x, double y, int channel)
+static double pattern_at(double x, double y, int channel)
 {
     return 0.5 + 0.3 * sin(20 * x + channel) * cos(17 * y - channel) + 0.1 * sin(11 * (x + y));
 }
@@ -310,7 +310,7 @@ static void draw(adcgs_image *image, const adcgs_lens *lens, int channels)
             const int shown = adcgs_lens_invert(lens, fold, i + 0.5, j + 0.5, xy);
             assert_true(shown || lens->is_fisheye); /* a fisheye also sees behind itself */
             for (int c = 0; c < channels; c++)
-                image->data[(j * image->width + i) * channels + c] = shown ? (float)look(xy[0], xy[1], c) : 0.0f;
+                image->data[(j * image->width + i) * channels + c] = shown ? (float)pattern_at(xy[0], xy[1], c) : 0.0f;
         }
 }
 
@@ -332,7 +332,7 @@ static differences compare(adcgs_lens lens, int channels)
     assert_true(image.width == c.width && image.height == c.height && image.channels == channels);
     for (int i = 0; i < c.height * c.width * channels; i++) {
         const int x = i / channels % c.width, y = i / channels / c.width;
-        const double truth = look((x + 0.5 - c.cx) / c.fx, (y + 0.5 - c.cy) / c.fy, i % channels);
+        const double truth = pattern_at((x + 0.5 - c.cx) / c.fx, (y + 0.5 - c.cy) / c.fy, i % channels);
         const double off = fabs((double)image.data[i] - truth);
         if (x >= EDGE && y >= EDGE && x < c.width - EDGE && y < c.height - EDGE) {
             d.inside = fmax(d.inside, off);

@@ -24,7 +24,7 @@ static void expect_good(adcgs_status status)
         fail_msg("%s", error.text);
 }
 
-static double look(double x, double y, int channel)
+static double pattern_at(double x, double y, int channel)
 {
     return 0.5 + 0.3 * sin(9 * x + channel) * cos(8 * y - channel) + 0.1 * sin(5 * (x + y));
 }
@@ -39,7 +39,7 @@ static void put_picture(const char *name, const adcgs_lens *lens)
         double xy[2];
         assert_true(adcgs_lens_invert(lens, fold, i % lens->width + 0.5, i / lens->width + 0.5, xy));
         for (int c = 0; c < 3; c++)
-            image.data[3 * i + c] = (float)look(xy[0], xy[1], c);
+            image.data[3 * i + c] = (float)pattern_at(xy[0], xy[1], c);
     }
     expect_good(adcgs_image_write(&image, in(name), 0, &error));
     adcgs_image_free(&image);
@@ -83,7 +83,7 @@ static void check_view(const adcgs_scene_view *view, const adcgs_lens *lens)
     assert_true(c.width != lens->width || c.height != lens->height || c.cx != lens->cx || c.cy != lens->cy);
     for (int i = 0; i < 3 * c.width * c.height; i++) {
         const int x = i % c.width, y = i / c.width % c.height;
-        const double truth = look((x + 0.5 - c.cx) / c.fx, (y + 0.5 - c.cy) / c.fy, i / c.width / c.height);
+        const double truth = pattern_at((x + 0.5 - c.cx) / c.fx, (y + 0.5 - c.cy) / c.fy, i / c.width / c.height);
         const int inside = x >= 2 && y >= 2 && x < c.width - 2 && y < c.height - 2;
         assert_true(fabs((double)rgb[i] - truth) < (inside ? INSIDE : EDGE));
     }

@@ -334,9 +334,9 @@ static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
 }
 
 /** A stream that grew, and the HEAD with its final length. */
-static void grow(adcgs_stream *s, adcgs_buffer *bytes, adcgs_buffer *head, size_t ends[SEGMENTS])
+static void grow_stream(adcgs_stream *s, adcgs_buffer *bytes, adcgs_buffer *head, size_t ends[SEGMENTS])
 {
-    adcgs_grow *grow;
+    adcgs_grow *grow_stream;
     adcgs_stream front;
     uint64_t seed = 5;
     adcgs_stream_init(s);
@@ -346,14 +346,15 @@ static void grow(adcgs_stream *s, adcgs_buffer *bytes, adcgs_buffer *head, size_
     front = *s;
     front.n_segments = 0;
     front.level = 3;
-    assert_int_equal(adcgs_grow_create(&grow, &front, 500, &error), ADCGS_OK);
+    assert_int_equal(adcgs_grow_create(&grow_stream, &front, 500, &error), ADCGS_OK);
     for (uint32_t i = 0; i < SEGMENTS; i++) {
-        assert_int_equal(adcgs_grow_segment(grow, i ? &s->segments[i - 1] : NULL, &s->segments[i], bytes, &error), ADCGS_OK);
+        assert_int_equal(adcgs_grow_segment(grow_stream, i ? &s->segments[i - 1] : NULL, &s->segments[i], bytes, &error),
+                         ADCGS_OK);
         ends[i] = bytes->size;
     }
-    assert_int_equal(adcgs_grow_end(grow, bytes, &error), ADCGS_OK);
-    assert_int_equal(adcgs_grow_settle(grow, head, &error), ADCGS_OK);
-    adcgs_grow_free(&grow);
+    assert_int_equal(adcgs_grow_end(grow_stream, bytes, &error), ADCGS_OK);
+    assert_int_equal(adcgs_grow_settle(grow_stream, head, &error), ADCGS_OK);
+    adcgs_grow_free(&grow_stream);
 }
 
 /** A settled stream is a normal stream of the same duration and models, with an index, at a lower level. */
@@ -368,7 +369,7 @@ static void test_settle(void **state)
     adcgs_buffer_init(&bytes);
     adcgs_buffer_init(&head);
     size_t ends[SEGMENTS];
-    grow(&s, &bytes, &head, ends);
+    grow_stream(&s, &bytes, &head, ends);
     FILE *from = tmpfile(), *to = tmpfile();
     assert_true(from && to && fwrite(bytes.data, 1, bytes.size, from) == bytes.size && !fseek(from, 0, SEEK_SET));
     assert_int_equal(adcgs_encode_replace_head(to, from, head.data, head.size, "x", &error), ADCGS_OK);
@@ -437,7 +438,7 @@ static void test_past(void **state)
     (void)state;
     adcgs_buffer_init(&bytes);
     adcgs_buffer_init(&head);
-    grow(&s, &bytes, &head, ends);
+    grow_stream(&s, &bytes, &head, ends);
     for (size_t n = 0; n <= bytes.size; n += 53)
         expect_past(&s, bytes.data, n, n, ends);
     for (uint32_t i = 0; i < SEGMENTS; i++)

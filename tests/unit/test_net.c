@@ -278,7 +278,7 @@ static void test_e24_equals_reference(void **state)
         }
 }
 
-static adcgs_status load(const adcgs_net *net)
+static adcgs_status load_net(const adcgs_net *net)
 {
     adcgs_e24 *e24;
     const adcgs_status status = adcgs_e24_create(&e24, net, ADCGS_CPU_SCALAR, NULL, NULL);
@@ -299,36 +299,36 @@ static void test_e24_row_bound(void **state)
     memcpy(net.layer[0].w.m + 15, row, sizeof row);
     net.layer[0].shift = 10;
     net.layer[0].b.m[3] = -((1 << 24) - 1 - 2047 * 8000 - 512);
-    assert_int_equal(load(&net), ADCGS_OK);
+    assert_int_equal(load_net(&net), ADCGS_OK);
     check_net(&net, &seed);
     net.layer[0].b.m[3]--;
-    assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
     net.layer[0].b.m[3]++;
     net.layer[0].shift = 11;
-    assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
     net.layer[0].shift = 10;
     net.layer[0].w.m[15 + 4] = -1;
-    assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
     net.layer[0].w.m[15 + 4] = 0;
     net.layer[0].w.m[0] = 2048;
-    assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
     net.layer[0].w.m[0] = INT32_MIN;
-    assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
     net.layer[0].w.m[0] = 0;
     net.layer[1].b.m[0] = INT32_MIN;
-    assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
     net.layer[1].b.m[0] = 0;
     net.layer[0].residual = 1;
-    assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
     net.layer[0].residual = 0;
     net.layer[1].w.cols = 3;
-    assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
     net.layer[1].w.cols = 4;
     net.layer[0].w.mode = 1;
-    assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
     net.layer[0].w.mode = 0;
     net.in_shift = 9;
-    assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
     adcgs_net_clear(&net);
 }
 
@@ -341,15 +341,15 @@ static void test_e24_steps_bound(void **state)
     uint64_t seed = 13;
     adcgs_net net;
     make_net(&net, 1, sizes, &seed);
-    assert_int_equal(load(&net), ADCGS_ERR_DATA); /* an odd number of outputs is no prior */
+    assert_int_equal(load_net(&net), ADCGS_ERR_DATA); /* an odd number of outputs is no prior */
     make_steps(&net);
     memset(net.layer[0].w.m, 0, 15 * sizeof(int32_t));
     net.layer[0].shift = 24;
     for (int row = 0; row < 3; row++) {
         net.layer[0].b.m[row] = row % 2 ? -((1 << 23) - 1) : (1 << 23) - 1;
-        assert_int_equal(load(&net), ADCGS_OK);
+        assert_int_equal(load_net(&net), ADCGS_OK);
         net.layer[0].b.m[row] += row % 2 ? -1 : 1;
-        assert_int_equal(load(&net), ADCGS_ERR_DATA);
+        assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
         net.layer[0].b.m[row] = 0;
     }
     check_net(&net, &seed);

@@ -315,7 +315,7 @@ static void expect_draco_round_trip(const adcgs_points *points)
     adcgs_points_free(&back);
 }
 
-static size_t load(const char *name, uint8_t *bytes, size_t most)
+static size_t load_file(const char *name, uint8_t *bytes, size_t most)
 {
     FILE *file = fopen(in(name), "rb");
     assert_non_null(file);
@@ -338,10 +338,10 @@ static void test_draco_writing(void **state)
     memcpy(points.colour[999], points.colour[3], sizeof *points.colour);
     points.coloured = 1;
     expect_draco_round_trip(&points);
-    const size_t n = load("w.drc", first, sizeof first);
+    const size_t n = load_file("w.drc", first, sizeof first);
     assert_true(n > 100 && n < sizeof first);
     assert_int_equal(adcgs_points_write(&points, in("again.DRC"), &error), ADCGS_OK);
-    assert_int_equal(load("again.DRC", second, sizeof second), n);
+    assert_int_equal(load_file("again.DRC", second, sizeof second), n);
     assert_memory_equal(first, second, n);
     memset(points.colour, 128, points.n * sizeof *points.colour);
     points.coloured = 0;

@@ -39,7 +39,7 @@ static void set_view(adcgs_stereo_view *v, int i)
 }
 
 /** The image of a camera, and its depths. */
-static void look(adcgs_stereo_camera *c, adcgs_depths *d)
+static void render_ball(adcgs_stereo_camera *c, adcgs_depths *d)
 {
     const adcgs_stereo_view *const v = &c->view;
     for (int i = 0; i < PIXELS; i++) {
@@ -72,7 +72,7 @@ static int make_rig(void **state)
         c->view.pixels = c->background;
         c->first = 100 + (uint32_t)i;
         set_view(&c->view, i);
-        look(c, &depths[i]);
+        render_ball(c, &depths[i]);
     }
     return 0;
 }

@@ -84,7 +84,7 @@ static void test_pictures(void **state)
     size_t bytes, size;
     int seen[N] = {0};
     expect_good(write_splats(&s, in("w.sog")));
-    uint8_t *const zip = load("w.sog", &bytes);
+    uint8_t *const zip = load_file("w.sog", &bytes);
     for (int k = 0; k < 5; k++)
         pixels[k] = picture(zip, bytes, names[k]);
     const char *const text = (const char *)find(zip, bytes, "meta.json", &size);

@@ -195,7 +195,7 @@ static void test_far(void **state)
         for (int a = 0; a < 3; a++)
             assert_true(back.offset[a] == (k < 2 ? s.offset[a] : 0.0));
         adcgs_splats_free(&back);
-        char *const text = (char *)load(formats[k], &bytes);
+        char *const text = (char *)load_file(formats[k], &bytes);
         assert_true(k || strstr(text, "\ncomment offset 4510728 -1512344 4260120\n"));
         free(text);
     }

@@ -156,7 +156,7 @@ static void test_rest(void **state)
         const adcgs_splats_style style = {.comment = "here", .rest_degree = degree};
         size_t bytes;
         expect_good(adcgs_splats_write(&s, &style, in("r.ply"), &error));
-        uint8_t *const file = load("r.ply", &bytes);
+        uint8_t *const file = load_file("r.ply", &bytes);
         size_t header = 0;
         while (header + 11 < bytes && memcmp(file + header, "end_header\n", 11))
             header++;

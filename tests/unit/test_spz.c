@@ -51,7 +51,7 @@ static void test_round_trip(void **state)
         adcgs_splats s = random_splats(1000, cases[i].size, cases[i].offset, 3 + i), back;
         size_t bytes;
         expect_good(write_splats(&s, in("w.spz")));
-        uint8_t *const file = load("w.spz", &bytes);
+        uint8_t *const file = load_file("w.spz", &bytes);
         assert_memory_equal(file, "NGSP\4\0\0\0\xe8\3\0\0\0", 13);
         assert_true(file[13] == cases[i].bits && file[14] == 0 && file[15] == 5 && adcgs_load_le32(file + 16) == 32);
         free(file);
@@ -200,7 +200,7 @@ static void test_bad(void **state)
     size_t bytes;
     expect_good(write_splats(&s, in("w.spz")));
     adcgs_splats_free(&s);
-    uint8_t *const file = load("w.spz", &bytes);
+    uint8_t *const file = load_file("w.spz", &bytes);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const uint8_t was = file[cases[i].at];
         file[cases[i].at] = cases[i].value;
@@ -227,7 +227,7 @@ static void test_bad_streams(void **state)
     size_t bytes;
     expect_good(write_splats(&s, in("w.spz")));
     adcgs_splats_free(&s);
-    uint8_t *const good = load("w.spz", &bytes);
+    uint8_t *const good = load_file("w.spz", &bytes);
     const size_t first = (size_t)adcgs_load_le64(good + 32), rest = bytes - 112 - first;
     for (size_t n = 62; n <= 64; n++) {
         const size_t packed = ZSTD_compress(stream, sizeof stream, column, n, 3);
@@ -253,7 +253,7 @@ static void test_bad_old(void **state)
     uint8_t raw[256], file[512];
     size_t bytes = make_old(raw, 3);
     const size_t whole = put_gzip("old.spz", raw, bytes);
-    uint8_t *const good = load("old.spz", &bytes);
+    uint8_t *const good = load_file("old.spz", &bytes);
     for (size_t cut = 2; cut < whole - 16; cut++) {
         memcpy(file, good, cut);
         file[cut] = 0;
@@ -277,7 +277,7 @@ static void test_bad_old(void **state)
         const size_t n = make_old(raw, 3);
         raw[cases[i].at] = cases[i].value;
         put_gzip("old.spz", raw, n);
-        uint8_t *const bad = load("old.spz", &bytes);
+        uint8_t *const bad = load_file("old.spz", &bytes);
         expect_bad(bad, bytes, cases[i].status, cases[i].what);
         free(bad);
     }
@@ -291,7 +291,7 @@ static void test_extensions(void **state)
     uint8_t file[1024] = {0};
     expect_good(write_splats(&s, in("w.spz")));
     adcgs_splats_free(&s);
-    uint8_t *const good = load("w.spz", &bytes);
+    uint8_t *const good = load_file("w.spz", &bytes);
     memcpy(file, good, 32);
     memcpy(file + 32 + 23, good + 32, bytes - 32);
     free(good);
@@ -325,7 +325,7 @@ static void test_mutations(void **state)
     put_gzip("m3.spz", raw, make_old(raw, 3));
     for (int version = 3; version <= 4; version++) {
         size_t bytes;
-        uint8_t *const file = load(version == 3 ? "m3.spz" : "m4.spz", &bytes);
+        uint8_t *const file = load_file(version == 3 ? "m3.spz" : "m4.spz", &bytes);
         for (size_t i = 0; i < bytes; i++)
             for (int v = 0; v < 256; v += 5) {
                 const uint8_t was = file[i];

@@ -96,7 +96,7 @@ static void test_round_trip(void **state)
     }
 }
 
-static char *load(const char *name, size_t *bytes)
+static char *load_file(const char *name, size_t *bytes)
 {
     char *data = malloc(1 << 20);
     FILE *file = fopen(in(name), "rb");
@@ -110,9 +110,9 @@ static void test_same_bytes(void **state)
 {
     size_t a_bytes, b_bytes;
     write_clip("same.mp4", 64, 48, 12, 30);
-    char *a = load("same.mp4", &a_bytes);
+    char *a = load_file("same.mp4", &a_bytes);
     write_clip("same.mp4", 64, 48, 12, 30);
-    char *b = load("same.mp4", &b_bytes);
+    char *b = load_file("same.mp4", &b_bytes);
     assert_int_equal(a_bytes, b_bytes);
     assert_memory_equal(a, b, a_bytes);
     free(a);
@@ -213,7 +213,7 @@ static void test_truncated(void **state)
         const char *const end = strrchr(names[i], '.');
         char cut[32];
         write_clip(names[i], 64, 48, 16, 30);
-        char *data = load(names[i], &bytes);
+        char *data = load_file(names[i], &bytes);
         assert_int_equal(refused(names[i], 16), 0);
         snprintf(cut, sizeof cut, "cut%s", end);
         for (size_t part = 1; part < 16; part++) {
@@ -231,7 +231,7 @@ static void test_listed(void **state)
     adcgs_video *video;
     adcgs_image image;
     write_clip("listed.mp4", 64, 48, 16, 30);
-    char *data = load("listed.mp4", &bytes);
+    char *data = load_file("listed.mp4", &bytes);
     /* An MP4 with its boxes in another order: ftyp, moov, mdat; offsets of chunks move by the size of moov. */
     size_t moov = 0, mdat = 0, at = 0, size;
     for (; at + 8 <= bytes; at += size) {
@@ -275,7 +275,7 @@ static void test_damaged(void **state)
     size_t bytes;
     int found = 0;
     write_clip("flip.mp4", 64, 48, 16, 30);
-    char *data = load("flip.mp4", &bytes);
+    char *data = load_file("flip.mp4", &bytes);
     for (size_t i = 0; i < 40; i++) {
         const size_t at = 8 + i * (bytes - 8) / 40;
         char kept[8];
@@ -342,7 +342,7 @@ static adcgs_clips *make_views(void)
     size_t bytes;
     adcgs_clips *clips;
     write_clip("v.mp4", 32, 32, FRAMES, 30);
-    char *data = load("v.mp4", &bytes);
+    char *data = load_file("v.mp4", &bytes);
     for (int v = 0; v < VIDEOS; v++) {
         char name[20];
         snprintf(name, sizeof name, "v%d.mp4", v);
