@@ -7,7 +7,7 @@ set -eu
 enc=$1 page=$2
 case $page in *.md) format=md ;; *) format=man ;; esac
 # Settings that users change; doc/settings.md lists them first.
-common="iterations batch seed scale lambda k max_anchors detail_anchors tiers stereo spans bodies gains black_levels trial_share
+common="iterations batch seed scale lambda k max_anchors detail_anchors tiers matching_frames lifetimes bodies gains black_levels trial_share
     ssim_weight dropout"
 
 entries=$(for preset in draft fast medium slow paper; do

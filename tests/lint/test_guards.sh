@@ -22,7 +22,7 @@ END
 include=(-I"$source/codec" -I"$source/codec/include" -std=c11 -fno-math-errno)
 # Other files of the check, compiled once; strict.c is compiled with the tested flags.
 files=()
-for file in "$dir/main.c" "$source"/codec/base/{cpu,status,crc32c}.c; do
+for file in "$dir/main.c" "$source"/codec/base/{cpu_detect,status,crc32c}.c; do
     files+=("$dir/$(basename "$file" .c).o")
     ${CC:-cc} "${include[@]}" -DHAVE_AVX2 -c "$file" -o "${files[-1]}" || exit 99
 done
@@ -75,7 +75,7 @@ flushed_by_linking()
 {
     tried=$((tried + 1))
     gcc "${include[@]}" -O2 -ffp-contract=off -c "$source/codec/base/strict.c" -o "$dir/strict.o" &&
-        gcc "$dir"/{main,cpu,status,crc32c,strict}.o -ffast-math -lm -o "$dir/main" || { fault "gcc: linking with -ffast-math"; return; }
+        gcc "$dir"/{main,cpu_detect,status,crc32c,strict}.o -ffast-math -lm -o "$dir/main" || { fault "gcc: linking with -ffast-math"; return; }
     "$dir/main" >"$dir/out"
     [ $? -eq 1 ] && grep -q subnormal "$dir/out" || fault "linked with -ffast-math: $(cat "$dir/out")"
 }

@@ -137,7 +137,7 @@ static void test_progress(void **state)
     assert_int_equal(load_store(&pictures, 0, 1, count, &last), ADCGS_OK);
     assert_int_equal(last, TRAIN);
     adcgs_image_store_free(&pictures);
-    expect_error(load_store(&pictures, 0, 1, stop, NULL), ADCGS_ERR_IO, "interrupted", "pictures");
+    expect_error(load_store(&pictures, 0, 1, stop, NULL), ADCGS_ERR_IO, "interrupted", "images");
     assert_null(pictures);
 }
 
