@@ -22,7 +22,8 @@ describe()
             arguments=(CC=gcc CXX=g++ CFLAGS=-O2 CXXFLAGS=-O1 --enable-werror --disable-simd)
             # Tests of training and of image matching take up to 20 times as long without SIMD. The other tests compare the
             # levels.
-            except=$(printf 'tests/unit/test_%s ' trainer train batch control temporal_densify nets rdo scale no_memory bodies monocular) ;;
+            except=$(printf 'tests/unit/test_%s ' trainer train batch control temporal_densify nets rdo scale no_memory bodies \
+                monocular) ;;
         sanitize)
             ADCGS_FUZZ_ROUNDS=10
             unset ADCGS_FULL # it evaluates functions for more numbers; the values are the same in this build
