@@ -70,6 +70,17 @@ static unsigned give_roles(adcgs_ply *ply)
     return roles;
 }
 
+/** True if the range of all colours decides which value is white; that of 8 bits and of splats' colours is fixed. */
+static int has_wide_colours(const adcgs_ply *ply)
+{
+    for (int i = 0; i < ply->vertex.n; i++) {
+        const adcgs_ply_property *const p = &ply->vertex.properties[i];
+        if (p->role >= RED && p->role < DC && p->type >= ADCGS_PLY_INT16)
+            return 1;
+    }
+    return 0;
+}
+
 static adcgs_status read_vertices(adcgs_ply *ply, adcgs_points *out)
 {
     const unsigned roles = give_roles(ply);
@@ -79,7 +90,7 @@ static adcgs_status read_vertices(adcgs_ply *ply, adcgs_points *out)
     out->coloured = roles >> RED != 0;
     taker t = {.points = out};
     adcgs_ply_offset(ply, t.offset);
-    adcgs_status status = out->coloured ? adcgs_ply_survey(ply, find_most, &t) : ADCGS_OK;
+    adcgs_status status = has_wide_colours(ply) ? adcgs_ply_survey(ply, find_most, &t) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = adcgs_ply_vertices(ply, set_property, &t);
     if (status != ADCGS_OK)

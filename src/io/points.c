@@ -4,6 +4,8 @@
 
 #include "io/points.h"
 
+#include "io/median.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -37,19 +39,6 @@ void adcgs_points_free(adcgs_points *points)
 
 /* ---- Far from the origin ---- */
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/** values: [n]; sorts them. */
-static double median(double *values, uint32_t n)
-{
-    qsort(values, n, sizeof *values, compare);
-    return values[n / 2];
-}
-
 /** True for a cloud far from the origin. Medians ignore a few outliers. */
 static int is_far(const adcgs_points *points)
 {
@@ -58,14 +47,14 @@ static int is_far(const adcgs_points *points)
     for (int a = 0; a < 3; a++) {
         for (uint32_t i = 0; i < n; i++)
             values[i] = points->position[(uint64_t)i * points->n / n][a];
-        middle[a] = median(values, n);
+        middle[a] = adcgs_median(values, n);
         distance = fmax(distance, fabs(middle[a]));
     }
     for (uint32_t i = 0; i < n; i++) {
         const double *const x = points->position[(uint64_t)i * points->n / n];
         values[i] = fmax(fabs(x[0] - middle[0]), fmax(fabs(x[1] - middle[1]), fabs(x[2] - middle[2])));
     }
-    const double size = median(values, n);
+    const double size = adcgs_median(values, n);
     return size > 0.0 && distance > ROUND_FAR * size;
 }
 

@@ -4,6 +4,7 @@
 
 #include "io/splats_ply.h"
 
+#include "io/median.h"
 #include "io/offset.h"
 #include "io/ply.h"
 
@@ -200,12 +201,6 @@ static void sample(void *user, uint64_t vertex, const adcgs_ply_property *proper
         s->values[property->role][s->n[property->role]++] = value;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /** The rounded median of binary64 positions if it is far from the origin compared with their spread, else zero. */
 static adcgs_status find_shift(adcgs_ply *ply, double shift[3])
 {
@@ -216,12 +211,10 @@ static adcgs_status find_shift(adcgs_ply *ply, double shift[3])
     s->step = ply->vertex.count / SAMPLES + 1;
     const adcgs_status status = adcgs_ply_survey(ply, sample, s);
     for (int a = 0; a < 3 && status == ADCGS_OK && s->n[a]; a++) {
-        qsort(s->values[a], s->n[a], sizeof **s->values, compare);
-        middle[a] = s->values[a][s->n[a] / 2];
+        middle[a] = adcgs_median(s->values[a], s->n[a]);
         for (size_t i = 0; i < s->n[a]; i++)
             s->values[a][i] = fabs(s->values[a][i] - middle[a]);
-        qsort(s->values[a], s->n[a], sizeof **s->values, compare);
-        spread = fmax(spread, s->values[a][s->n[a] / 2]);
+        spread = fmax(spread, adcgs_median(s->values[a], s->n[a]));
     }
     adcgs_offset_of(shift, middle, spread > 0.0 ? spread : 1.0);
     free(s);

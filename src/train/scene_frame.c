@@ -5,6 +5,7 @@
 #include "camera/rotation.h"
 #include "data/extent.h"
 #include "data/sort_values.h"
+#include "io/median.h"
 
 #include <math.h>
 
@@ -110,12 +111,6 @@ static adcgs_status take_gaze(gaze *g, const adcgs_scene *scene, adcgs_error *er
     return ADCGS_OK;
 }
 
-static double median(double *values, uint32_t n)
-{
-    adcgs_sort(values, n);
-    return values[n / 2];
-}
-
 /** True if most training cameras have the point in front, at about the depth of the points that they see. */
 static int is_looked_at(const adcgs_scene *scene, const gaze *g, const double x[3])
 {
@@ -128,7 +123,7 @@ static int is_looked_at(const adcgs_scene *scene, const gaze *g, const double x[
         return 0;
     for (uint32_t i = 0; i < g->n; i++)
         ratio[i] = depth_of(scene, g->view[i], x) / g->depth[i];
-    const double usual = g->n ? median(ratio, g->n) : 1;
+    const double usual = g->n ? adcgs_median(ratio, g->n) : 1;
     return usual >= NEAR && usual <= FAR;
 }
 
@@ -141,7 +136,7 @@ static void middle_of_gaze(const adcgs_scene *scene, const gaze *g, double focus
             const double *m = scene->views[ADCGS_SPLIT_TRAIN][g->view[i]].camera.cam_to_world;
             at[i] = m[4 * a + 3] + g->depth[i] * m[4 * a + 2];
         }
-        focus[a] = median(at, g->n);
+        focus[a] = adcgs_median(at, g->n);
     }
 }
 
@@ -177,7 +172,7 @@ static adcgs_status find_scale(const adcgs_scene *scene, gaze *g, double extent,
         const double d[3] = { m[3] - origin[0], m[7] - origin[1], m[11] - origin[2] };
         distance[v] = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     }
-    const double usual = median(distance, n), least = g->n ? UNIT_LEAST * median(g->depth, g->n) : 0;
+    const double usual = adcgs_median(distance, n), least = g->n ? UNIT_LEAST * adcgs_median(g->depth, g->n) : 0;
     adcgs_free(NULL, distance);
     *scale = usual > ADCGS_EXTENT_NOTHING * extent ? usual : extent; /* all cameras may be in one position */
     *scale = fmax(*scale, least);
