@@ -25,10 +25,10 @@ static adcgs_status check_mask_size(const adcgs_scene_view *view, const char *pa
                       "same aspect ratio", path, width, height, wanted[0], wanted[1]);
 }
 
-adcgs_status adcgs_view_mask_read(const adcgs_scene_view *view, const char *path, adcgs_image *mask, adcgs_error *error)
+/** Reads a mask whose size was checked. */
+static adcgs_status read_mask(const adcgs_scene_view *view, const char *path, adcgs_image *mask, adcgs_error *error)
 {
-    int channels, wanted[2];
-    ADCGS_TRY(check_mask_size(view, path, &channels, error));
+    int wanted[2];
     ADCGS_TRY(adcgs_image_read(mask, path, error));
     adcgs_view_size(view, wanted);
     adcgs_status status = adcgs_mask_settle(mask, path, error);
@@ -39,6 +39,13 @@ adcgs_status adcgs_view_mask_read(const adcgs_scene_view *view, const char *path
     return status;
 }
 
+adcgs_status adcgs_view_mask_read(const adcgs_scene_view *view, const char *path, adcgs_image *mask, adcgs_error *error)
+{
+    int channels;
+    ADCGS_TRY(check_mask_size(view, path, &channels, error));
+    return read_mask(view, path, mask, error);
+}
+
 adcgs_status adcgs_view_mask_probe(const adcgs_scene_view *view, const char *path, adcgs_error *error)
 {
     int channels;
@@ -46,7 +53,7 @@ adcgs_status adcgs_view_mask_probe(const adcgs_scene_view *view, const char *pat
     ADCGS_TRY(check_mask_size(view, path, &channels, error));
     if (channels % 2)
         return ADCGS_OK;
-    ADCGS_TRY(adcgs_view_mask_read(view, path, &mask, error));
+    ADCGS_TRY(read_mask(view, path, &mask, error));
     adcgs_image_free(&mask);
     return ADCGS_OK;
 }

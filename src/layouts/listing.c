@@ -69,6 +69,11 @@ void adcgs_listing_free(adcgs_listing *listing)
     *listing = (adcgs_listing){0};
 }
 
+int adcgs_is_visible_name(const char *name)
+{
+    return *name != '.';
+}
+
 int adcgs_is_image_name(const char *name)
 {
     static const char *const ends[] = {"png", "jpg", "jpeg", "exr", "tif", "tiff", "webp", "ppm"};

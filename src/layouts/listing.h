@@ -15,6 +15,8 @@ typedef struct adcgs_listing {
 adcgs_status adcgs_listing_read(adcgs_listing *out, const char *folder, int (*keep)(const char *name), adcgs_error *error);
 void adcgs_listing_free(adcgs_listing *listing);
 
+/** True for names that do not begin with a dot. */
+int adcgs_is_visible_name(const char *name);
 /** True if a name ends like that of an image. */
 int adcgs_is_image_name(const char *name);
 /** Copies a name without folder and extension, truncated to the size of out. */

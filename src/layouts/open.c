@@ -277,18 +277,13 @@ static adcgs_status refuse_sequence(const char *folder, adcgs_error *error)
     return status;
 }
 
-static int is_anything(const char *name)
-{
-    return *name != '.';
-}
-
 /** Refuses a folder with a scene in a subfolder, as in unpacked archives and COLMAP's dense workspaces, and names it. */
 static adcgs_status refuse_above(const char *folder, adcgs_error *error)
 {
     adcgs_listing listing;
     adcgs_error unused;
     adcgs_status status = ADCGS_OK;
-    if (adcgs_listing_read(&listing, folder, is_anything, &unused) != ADCGS_OK)
+    if (adcgs_listing_read(&listing, folder, adcgs_is_visible_name, &unused) != ADCGS_OK)
         return ADCGS_OK;
     for (size_t i = 0; status == ADCGS_OK && i < listing.n && i < FOLDERS_MOST; i++) {
         char *const below = adcgs_path("%s/%s", folder, listing.names[i]);

@@ -9,11 +9,6 @@
 
 #include <stdlib.h>
 
-static int is_anything(const char *name)
-{
-    return *name != '.';
-}
-
 adcgs_status adcgs_unmasked_remark(adcgs_scene *scene, const char *how, adcgs_error *error)
 {
     static const char *const folders[] = {"masks", "mask"};
@@ -29,7 +24,7 @@ adcgs_status adcgs_unmasked_remark(adcgs_scene *scene, const char *how, adcgs_er
         if (!path)
             return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", scene->directory);
         const int is_there = adcgs_is_folder(path);
-        const adcgs_status status = is_there ? adcgs_listing_read(&listing, path, is_anything, error) : ADCGS_OK;
+        const adcgs_status status = is_there ? adcgs_listing_read(&listing, path, adcgs_is_visible_name, error) : ADCGS_OK;
         free(path);
         if (status == ADCGS_ERR_MEMORY)
             return status;

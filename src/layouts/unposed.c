@@ -85,17 +85,12 @@ static adcgs_status count_image(counter *c, const char *path)
     return ADCGS_OK;
 }
 
-static int is_anything(const char *name)
-{
-    return *name != '.';
-}
-
 /** Counts images below a folder, which ends with its slash. An unreadable folder counts as empty. */
 static adcgs_status count(counter *c, const char *folder, int depth)
 {
     adcgs_listing listing;
     size_t folders = 0;
-    adcgs_status status = adcgs_listing_read(&listing, folder, is_anything, c->error);
+    adcgs_status status = adcgs_listing_read(&listing, folder, adcgs_is_visible_name, c->error);
     if (status != ADCGS_OK)
         return status == ADCGS_ERR_MEMORY ? status : ADCGS_OK;
     for (size_t i = 0; status == ADCGS_OK && i < listing.n; i++) {
