@@ -8,12 +8,19 @@
 
 /* ---- One setting ---- */
 
-const adcgs_setting *adcgs_setting_find(const char *name)
+/** The row of a former name of this length; NULL if there is none. */
+static const adcgs_setting_former *find_former(const char *name, size_t length)
 {
     const adcgs_setting_former *former = adcgs_settings_former;
-    while (former->name && strcmp(former->name, name) != 0)
+    while (former->name && (strlen(former->name) != length || memcmp(former->name, name, length) != 0))
         former++;
-    const char *const now = former->name ? former->now : name;
+    return former->name ? former : NULL;
+}
+
+const adcgs_setting *adcgs_setting_find(const char *name)
+{
+    const adcgs_setting_former *const former = find_former(name, strlen(name));
+    const char *const now = former ? former->now : name;
     const adcgs_setting *s = adcgs_settings;
     while (s->name && strcmp(s->name, now) != 0)
         s++;
@@ -27,9 +34,9 @@ const adcgs_setting_former *adcgs_setting_next_former(const char **list)
         const size_t length = strcspn(name, "=,");
         *list += strcspn(name, ",");
         *list += **list == ',';
-        for (const adcgs_setting_former *former = adcgs_settings_former; former->name; former++)
-            if (strlen(former->name) == length && !memcmp(former->name, name, length))
-                return former;
+        const adcgs_setting_former *const former = find_former(name, length);
+        if (former)
+            return former;
     }
     return NULL;
 }

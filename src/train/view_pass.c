@@ -35,7 +35,7 @@ static adcgs_pass_mode mode_of(const adcgs_trainer *t, double progress, uint32_t
                               .seed = (uint32_t)adcgs_random64(c->seed, 3000, number) };
 }
 
-/** Whether a view's image contains one of an anchor's primitives, by its centre or by what it covers. */
+/** True if a view's image contains the centre of one of an anchor's primitives, or pixels that one covers. */
 static int is_in_view(const adcgs_trainer *t, const adcgs_view *v, uint32_t anchor)
 {
     const float *const *mean = t->pass->primitives.mean;

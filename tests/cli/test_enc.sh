@@ -18,7 +18,7 @@ enc()
 # same A B WHAT: two streams are equal byte for byte.
 same() { cmp "$dir/$1.adcgs" "$dir/$2.adcgs" || bad "$3"; }
 
-# differ A B WHAT: two streams have different frames, whatever their metadata.
+# differ A B MESSAGE: two streams have different frames; their metadata may differ, too.
 differ()
 {
     [ "$(./adcgs-dec "$dir/$1.adcgs" --md5 2>/dev/null)" != "$(./adcgs-dec "$dir/$2.adcgs" --md5 2>/dev/null)" ] || bad "$3"

@@ -420,7 +420,7 @@ static void faint_layers_move_together(void **state)
     assert_true(faint > opaque);
 }
 
-/** Anchors in regions where no camera's images change become static, whatever motion the networks give them. The others move. */
+/** Anchors in regions where no camera's images change become static, independent of the networks' motion. The others move. */
 static void what_never_changes_is_static(void **state)
 {
     adcgs_train_config config = all_stages_config();
@@ -1482,7 +1482,7 @@ static void run_behind_mask(float value, adcgs_buffer *end, double *psnr)
     free(views);
 }
 
-/** Pixels behind a mask have no effect: whatever they hold, the run ends in the same state, to the bit. */
+/** Pixels behind a mask have no effect: with any values the run ends in the same state, to the bit. */
 static void masked_pixels_have_no_part(void **state)
 {
     const int side = 32; /* of the tiny scene's images */
