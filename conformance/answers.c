@@ -18,7 +18,7 @@ static void hex_of(adcgs_md5 *md5, char hex[33])
 
 const char *adcgs_answers_verdict(const char *id)
 {
-    static const char *const verdicts[] = { "good", "bad", "limit", "unsup" };
+    static const char *const verdicts[] = {"good", "bad", "limit", "unsup"};
     for (size_t i = 0; i < ADCGS_COUNTOF(verdicts); i++)
         if (strncmp(id, verdicts[i], strlen(verdicts[i])) == 0 && id[strlen(verdicts[i])] == '-')
             return verdicts[i];
@@ -27,8 +27,11 @@ const char *adcgs_answers_verdict(const char *id)
 
 static const char *class_of(adcgs_status status)
 {
-    return status == ADCGS_ERR_DATA ? "data" : status == ADCGS_ERR_TRUNCATED ? "truncated" :
-           status == ADCGS_ERR_UNSUPPORTED ? "unsupported" : status == ADCGS_ERR_LIMIT ? "limit" : "";
+    return status == ADCGS_ERR_DATA          ? "data"
+           : status == ADCGS_ERR_TRUNCATED   ? "truncated"
+           : status == ADCGS_ERR_UNSUPPORTED ? "unsupported"
+           : status == ADCGS_ERR_LIMIT       ? "limit"
+                                             : "";
 }
 
 /* ---- Parts of an entry ---- */
@@ -118,7 +121,7 @@ static adcgs_status print_frame(FILE *out, adcgs_decoder *decoder, const adcgs_c
 {
     uint8_t digest[16];
     char hex[33];
-    adcgs_frame frame = { .width = c->width, .height = c->height };
+    adcgs_frame frame = {.width = c->width, .height = c->height};
     frame.rgb = malloc(3 * sizeof *frame.rgb * (size_t)c->width * (size_t)c->height);
     if (!frame.rgb)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "no memory for a frame");
@@ -228,10 +231,10 @@ adcgs_status adcgs_answers_print(FILE *out, const adcgs_plan *plan, const adcgs_
 {
     const char *const id = plan->recipe->id, *const verdict = adcgs_answers_verdict(id);
     const adcgs_command *const title = own_command(plan, "title");
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR };
-    adcgs_span source = { .next = file->data, .left = file->size };
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR};
+    adcgs_span source = {.next = file->data, .left = file->size};
     adcgs_trace_sum trace;
-    adcgs_error why = { ADCGS_OK, "" };
+    adcgs_error why = {ADCGS_OK, ""};
     adcgs_stream stream;
     adcgs_md5 md5;
     char hex[33];

@@ -159,7 +159,10 @@ adcgs_status adcgs_chunk_list_write(adcgs_chunk_list *list, adcgs_buffer *out, a
         if (is_type(&list->chunk[i], "ENDC") && !list->chunk[i].as_is)
             complete_end(list, &list->chunk[i]);
     out->size = 0;
-    adcgs_write_bytes(out, "\x8B" "ADC\r\n\x1A\n", SIGNATURE);
+    adcgs_write_bytes(out,
+                      "\x8B"
+                      "ADC\r\n\x1A\n",
+                      SIGNATURE);
     for (int i = 0; i < list->n; i++)
         write_chunk(&list->chunk[i], out);
     return out->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "no memory for a stream") : ADCGS_OK;

@@ -16,11 +16,11 @@ typedef struct adcgs_raw_chunk {
     uint16_t segment;
     uint8_t flags, version;
     adcgs_buffer payload;
-    int as_is;              /**< INDX, ENDC: the payload is kept when the list is assembled */
-    int has_length;         /**< the header holds the member length instead of the payload's size */
+    int as_is;      /**< INDX, ENDC: the payload is kept when the list is assembled */
+    int has_length; /**< the header holds the member length instead of the payload's size */
     uint32_t length;
     uint32_t header_damage, payload_damage; /**< XORed to the checksums */
-    size_t at;              /**< position of the chunk in the last written stream */
+    size_t at;                              /**< position of the chunk in the last written stream */
 } adcgs_raw_chunk;
 
 typedef struct adcgs_chunk_list {

@@ -56,7 +56,7 @@ static adcgs_status add_layers(adcgs_plan *plan, uint32_t segment, int tier, adc
 {
     const adcgs_drawn_tier *const d = &plan->drawn[segment].tier[tier];
     for (int layer = 0; d->n_slices > 0 && layer < adcgs_params_layers(&plan->stream.params); layer++) {
-        const char type[5] = { 'F', 'E', 'A', (char)('0' + layer), 0 };
+        const char type[5] = {'F', 'E', 'A', (char)('0' + layer), 0};
         const adcgs_buffer *const slice = d->data + (size_t)layer * d->n_slices;
         adcgs_buffer *payload;
         ADCGS_TRY(add(out, type, segment, ADCGS_CHUNK_OF_TIER(tier), &payload, error));
@@ -127,7 +127,7 @@ static adcgs_status add_poked(adcgs_plan *plan, const adcgs_command *c, void *us
 static adcgs_status add_segment(adcgs_plan *plan, uint32_t segment, id_table *table, adcgs_chunk_list *out, adcgs_error *error)
 {
     const adcgs_model *const m = &plan->stream.segments[segment];
-    adcgs_role_ids ids = { 0 };
+    adcgs_role_ids ids = {0};
     adcgs_buffer *payload;
     uint8_t digest[16];
     const uint32_t first = assign_ids(table, m, &ids), added = table->n - first;
@@ -159,7 +159,7 @@ static adcgs_status add_segment(adcgs_plan *plan, uint32_t segment, id_table *ta
 
 adcgs_status adcgs_plan_compose(adcgs_plan *plan, adcgs_chunk_list *out, adcgs_error *error)
 {
-    id_table table = { .list = out };
+    id_table table = {.list = out};
     adcgs_buffer *payload;
     uint32_t most = 0;
     for (uint32_t i = 0; i < plan->segments; i++)
@@ -194,7 +194,7 @@ static adcgs_status check_used(const adcgs_recipe *r, adcgs_error *error)
 
 adcgs_status adcgs_plan_build(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_buffer *file, adcgs_error *error)
 {
-    adcgs_chunk_list list = { .n = 0 };
+    adcgs_chunk_list list = {.n = 0};
     adcgs_status status = adcgs_plan_init(plan, recipe, error);
     if (status == ADCGS_OK)
         status = adcgs_plan_draw(plan, error);

@@ -140,10 +140,10 @@ static void fill_steps(float *d, int n, int form, double value)
 /* steps fv|sigma|colour|fg FORM VALUE */
 static adcgs_status set_steps(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
-    static const char *const groups[] = { "fv", "sigma", "colour", "fg", NULL };
+    static const char *const groups[] = {"fv", "sigma", "colour", "fg", NULL};
     adcgs_model *const m = user;
-    float *const d[] = { m->d_fv, m->d_sigma, m->d_colour, m->d_fg };
-    const int n[] = { m->params.n_fv, adcgs_sigma_rows(&m->params), ADCGS_COLOUR_N, m->params.n_fg };
+    float *const d[] = {m->d_fv, m->d_sigma, m->d_colour, m->d_fg};
+    const int n[] = {m->params.n_fv, adcgs_sigma_rows(&m->params), ADCGS_COLOUR_N, m->params.n_fg};
     int group;
     int64_t form;
     double value;
@@ -254,8 +254,8 @@ static int word_is_index(const char *word, int index)
 /* force GROUP ANCHOR K CHANNEL VALUE; numbers or *, and VALUE also as [-]max, [-]edge, [-]escape. */
 static adcgs_status force(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
-    static const char *const groups[] = { "eta", "fv", "sigma", "colour", "fg", NULL };
-    static const char *const names[] = { "max", "edge", "escape", NULL };
+    static const char *const groups[] = {"eta", "fv", "sigma", "colour", "fg", NULL};
+    static const char *const names[] = {"max", "edge", "escape", NULL};
     forced *const f = user;
     int group, name;
     int64_t value;
@@ -282,7 +282,7 @@ static void draw_site(void *user, const adcgs_latent_site *site)
     drawing *const w = user;
     for (int c = 0; c < site->count; c++) {
         const int shape = w->model->shape[site->group], si = site->si[c];
-        forced f = { site, c, shape, si, 0 };
+        forced f = {site, c, shape, si, 0};
         if (si > 0) {
             const int32_t most = adcgs_value_max(shape, si);
             f.n = choose(w, site, c, shape, si);
@@ -306,7 +306,7 @@ static adcgs_status draw_slices(adcgs_plan *plan, adcgs_model *m, adcgs_drawn_ti
     const uint32_t slice = 1U << plan->stream.slice_log2;
     const int layers = adcgs_params_layers(&m->params);
     adcgs_latents *latents = NULL;
-    drawing w = { .plan = plan, .model = m };
+    drawing w = {.plan = plan, .model = m};
     out->n_slices = m->n ? ((m->n - 1) >> plan->stream.slice_log2) + 1 : 0;
     out->data = adcgs_alloc(NULL, ADCGS_LAYERS * out->n_slices, sizeof *out->data, error);
     if (!out->data)
@@ -390,7 +390,7 @@ static adcgs_status draw_key(adcgs_plan *plan, uint32_t segment, adcgs_error *er
 static adcgs_status draw_predicted(adcgs_plan *plan, uint32_t segment, adcgs_error *error)
 {
     adcgs_model *const m = &plan->stream.segments[segment], *const before = m - 1;
-    adcgs_inter kept = { .n = 0 };
+    adcgs_inter kept = {.n = 0};
     *m = adcgs_random_frame(before);
     m->n = plan->anchors[segment];
     adcgs_status status = adcgs_plan_keep(plan, before, &kept, error);
@@ -419,8 +419,8 @@ static adcgs_status draw_model(adcgs_plan *plan, uint32_t segment, adcgs_error *
 adcgs_status adcgs_plan_draw(adcgs_plan *plan, adcgs_error *error)
 {
     adcgs_stream *const s = &plan->stream;
-    const adcgs_latent_site nowhere = { .k = 0, .group = ADCGS_GROUP_ETA };
-    forced f = { .site = &nowhere, .si = 1 };
+    const adcgs_latent_site nowhere = {.k = 0, .group = ADCGS_GROUP_ETA};
+    forced f = {.site = &nowhere, .si = 1};
     ADCGS_TRY(adcgs_params_validate(&s->params, error));
     ADCGS_TRY(adcgs_plan_each(plan, "force", force, &f, error));
     s->segments = adcgs_alloc(NULL, plan->segments, sizeof *s->segments, error);

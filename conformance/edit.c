@@ -7,9 +7,9 @@
 
 typedef struct editor {
     adcgs_chunk_list *list;
-    adcgs_buffer *out;      /**< the stream, from the first change of bytes on */
+    adcgs_buffer *out; /**< the stream, from the first change of bytes on */
     int is_bytes;
-    adcgs_script *script;   /**< between "code" and "end" */
+    adcgs_script *script; /**< between "code" and "end" */
     const adcgs_command *code;
 } editor;
 
@@ -45,7 +45,7 @@ static adcgs_status set_element(editor *e, const adcgs_command *c, adcgs_error *
 /* NAME=NUMBER of a chunk's header; returns nonzero if it is one. */
 static int header_word(adcgs_raw_chunk *chunk, const char *word, adcgs_status *status, adcgs_error *error)
 {
-    static const char *const names[] = { "segment", "flags", "version", "length", NULL };
+    static const char *const names[] = {"segment", "flags", "version", "length", NULL};
     int64_t value = 0;
     for (int i = 0; names[i]; i++) {
         const char *const text = adcgs_word_value(word, names[i]);
@@ -86,7 +86,7 @@ static adcgs_status set_header(editor *e, const adcgs_command *c, adcgs_error *e
 /* damage CHUNK header|payload MASK: a wrong checksum */
 static adcgs_status damage(editor *e, const adcgs_command *c, adcgs_error *error)
 {
-    static const char *const names[] = { "header", "payload", NULL };
+    static const char *const names[] = {"header", "payload", NULL};
     adcgs_raw_chunk *chunk;
     int which;
     int64_t mask;
@@ -133,7 +133,7 @@ static adcgs_status fill_chunk(editor *e, int at, const char *word, adcgs_error 
 /* insert TYPE before|after CHUNK ... */
 static adcgs_status insert(editor *e, const adcgs_command *c, adcgs_error *error)
 {
-    static const char *const places[] = { "before", "after", NULL };
+    static const char *const places[] = {"before", "after", NULL};
     int place, at;
     ADCGS_TRY(adcgs_command_words(c, 3, 12, error));
     ADCGS_TRY(adcgs_word_choice(c->word[2], places, &place, error));
@@ -172,7 +172,7 @@ static adcgs_status swap(editor *e, const adcgs_command *c, adcgs_error *error)
 /* move CHUNK before|after CHUNK */
 static adcgs_status move(editor *e, const adcgs_command *c, adcgs_error *error)
 {
-    static const char *const places[] = { "before", "after", NULL };
+    static const char *const places[] = {"before", "after", NULL};
     int place, from, to;
     ADCGS_TRY(adcgs_command_words(c, 3, 3, error));
     ADCGS_TRY(adcgs_word_choice(c->word[2], places, &place, error));
@@ -383,10 +383,11 @@ static const struct {
     edit_fn fn;
     int is_bytes;
 } edits[] = {
-    { "set", set_element, 0 }, { "header", set_header, 0 }, { "damage", damage, 0 }, { "insert", insert, 0 },
-    { "remove", remove_chunk, 0 }, { "swap", swap, 0 }, { "move", move, 0 }, { "append", append, 0 }, { "shorten", shorten, 0 },
-    { "slice", edit_slice, 0 }, { "keep", split, 0 }, { "split", split, 0 }, { "code", begin_code, 0 }, { "end", end_code, 0 },
-    { "flip", flip, 1 }, { "cut", cut, 1 }, { "tail", tail, 1 },
+    {"set", set_element, 0},     {"header", set_header, 0}, {"damage", damage, 0}, {"insert", insert, 0},
+    {"remove", remove_chunk, 0}, {"swap", swap, 0},         {"move", move, 0},     {"append", append, 0},
+    {"shorten", shorten, 0},     {"slice", edit_slice, 0},  {"keep", split, 0},    {"split", split, 0},
+    {"code", begin_code, 0},     {"end", end_code, 0},      {"flip", flip, 1},     {"cut", cut, 1},
+    {"tail", tail, 1},
 };
 
 static adcgs_status apply(editor *e, adcgs_command *c, adcgs_error *error)
@@ -412,7 +413,7 @@ static adcgs_status apply(editor *e, adcgs_command *c, adcgs_error *error)
 
 adcgs_status adcgs_edit_apply(adcgs_plan *plan, adcgs_chunk_list *list, adcgs_buffer *out, adcgs_error *error)
 {
-    editor e = { .list = list, .out = out };
+    editor e = {.list = list, .out = out};
     adcgs_status status = ADCGS_OK;
     for (int i = 0; i < plan->recipe->n && status == ADCGS_OK; i++) {
         adcgs_command *const c = &plan->recipe->command[i];

@@ -18,8 +18,8 @@ adcgs_status adcgs_edit_apply(adcgs_plan *plan, adcgs_chunk_list *list, adcgs_bu
 typedef struct adcgs_element {
     int chunk;
     size_t offset, bytes;
-    int type;         /**< adcgs_field_type, or one of the following */
-    char value[192];  /**< in the form of the trace */
+    int type;        /**< adcgs_field_type, or one of the following */
+    char value[192]; /**< in the form of the trace */
 } adcgs_element;
 #define ADCGS_ELEMENT_VAR 100
 #define ADCGS_ELEMENT_TEXT 101

@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define ONE(type, name, min, max) { #name, ADCGS_##type },
-#define MANY(type, name, count, min, max) { #name, ADCGS_##type },
+#define ONE(type, name, min, max) {#name, ADCGS_##type},
+#define MANY(type, name, count, min, max) {#name, ADCGS_##type},
 
 typedef struct element_type {
     const char *name;
@@ -19,21 +19,31 @@ typedef struct element_type {
 
 static const element_type types[] = {
     /* qualified by the chunk where the plain name would match another element */
-    { "NETW.first_id", ADCGS_ELEMENT_VAR },   { "NETW.networks", ADCGS_ELEMENT_VAR },   { "NETW.width", ADCGS_ELEMENT_VAR },
-    { "NETW.values", ADCGS_ELEMENT_BYTES },   { "SEGM.network_id", ADCGS_ELEMENT_VAR }, { "GEOM.positions", ADCGS_ELEMENT_BYTES },
-    { "KEEP.modes", ADCGS_ELEMENT_BYTES },
-    { "hash.md5", ADCGS_ELEMENT_BYTES },      { "cams.cameras", ADCGS_ELEMENT_VAR },    { "cams.name", ADCGS_ELEMENT_TEXT },
-    { "meta.entries", ADCGS_ELEMENT_VAR },    { "meta.key", ADCGS_ELEMENT_TEXT },       { "meta.value", ADCGS_ELEMENT_TEXT },
-    { "INDX.segments", ADCGS_ELEMENT_VAR },   { "first_slice", ADCGS_ELEMENT_VAR },     { "slices", ADCGS_ELEMENT_VAR },
-    { "slice_bytes", ADCGS_ELEMENT_VAR },
+    {"NETW.first_id", ADCGS_ELEMENT_VAR},
+    {"NETW.networks", ADCGS_ELEMENT_VAR},
+    {"NETW.width", ADCGS_ELEMENT_VAR},
+    {"NETW.values", ADCGS_ELEMENT_BYTES},
+    {"SEGM.network_id", ADCGS_ELEMENT_VAR},
+    {"GEOM.positions", ADCGS_ELEMENT_BYTES},
+    {"KEEP.modes", ADCGS_ELEMENT_BYTES},
+    {"hash.md5", ADCGS_ELEMENT_BYTES},
+    {"cams.cameras", ADCGS_ELEMENT_VAR},
+    {"cams.name", ADCGS_ELEMENT_TEXT},
+    {"meta.entries", ADCGS_ELEMENT_VAR},
+    {"meta.key", ADCGS_ELEMENT_TEXT},
+    {"meta.value", ADCGS_ELEMENT_TEXT},
+    {"INDX.segments", ADCGS_ELEMENT_VAR},
+    {"first_slice", ADCGS_ELEMENT_VAR},
+    {"slices", ADCGS_ELEMENT_VAR},
+    {"slice_bytes", ADCGS_ELEMENT_VAR},
     ADCGS_LIST_VERSION(ONE, MANY) ADCGS_LIST_HEAD(ONE, MANY) ADCGS_LIST_NET(ONE, MANY) ADCGS_LIST_NET_E24(ONE, MANY)
-    ADCGS_LIST_NET_PRIOR(ONE, MANY) ADCGS_LIST_LAYER(ONE, MANY)
-    ADCGS_LIST_LAYER_BIAS(ONE, MANY) ADCGS_LIST_LAYER_E24(ONE, MANY) ADCGS_LIST_SEGM(ONE, MANY)
-    ADCGS_LIST_SHAPES(ONE, MANY) ADCGS_LIST_GROWTH(ONE, MANY) ADCGS_LIST_STEP_FORM(ONE, MANY) ADCGS_LIST_STEP(ONE, MANY)
-    ADCGS_LIST_STEP_SHORT(ONE, MANY) ADCGS_LIST_ETA(ONE, MANY) ADCGS_LIST_GEOM(ONE, MANY) ADCGS_LIST_GRID(ONE, MANY)
-    ADCGS_LIST_SLICE_CRC(ONE, MANY) ADCGS_LIST_CAMERA(ONE, MANY) ADCGS_LIST_LENS(ONE, MANY)
-    ADCGS_LIST_POSE(ONE, MANY) ADCGS_LIST_POSE_SHORT(ONE, MANY) ADCGS_LIST_INDEX(ONE, MANY) ADCGS_LIST_ENDC(ONE, MANY)
-};
+        ADCGS_LIST_NET_PRIOR(ONE, MANY) ADCGS_LIST_LAYER(ONE, MANY) ADCGS_LIST_LAYER_BIAS(ONE, MANY)
+            ADCGS_LIST_LAYER_E24(ONE, MANY) ADCGS_LIST_SEGM(ONE, MANY) ADCGS_LIST_SHAPES(ONE, MANY) ADCGS_LIST_GROWTH(ONE, MANY)
+                ADCGS_LIST_STEP_FORM(ONE, MANY) ADCGS_LIST_STEP(ONE, MANY) ADCGS_LIST_STEP_SHORT(ONE, MANY)
+                    ADCGS_LIST_ETA(ONE, MANY) ADCGS_LIST_GEOM(ONE, MANY) ADCGS_LIST_GRID(ONE, MANY)
+                        ADCGS_LIST_SLICE_CRC(ONE, MANY) ADCGS_LIST_CAMERA(ONE, MANY) ADCGS_LIST_LENS(ONE, MANY)
+                            ADCGS_LIST_POSE(ONE, MANY) ADCGS_LIST_POSE_SHORT(ONE, MANY) ADCGS_LIST_INDEX(ONE, MANY)
+                                ADCGS_LIST_ENDC(ONE, MANY)};
 
 /** Search for the n-th element of a name. */
 typedef struct search {
@@ -70,7 +80,7 @@ static int type_of(const char *name, size_t length)
 
 static adcgs_status measure(const adcgs_chunk_list *list, adcgs_element *e, adcgs_error *error)
 {
-    static const uint8_t bytes[] = { 1, 2, 4, 8, 2, 8, 4, 8 };
+    static const uint8_t bytes[] = {1, 2, 4, 8, 2, 8, 4, 8};
     const adcgs_buffer *const payload = &list->chunk[e->chunk].payload;
     adcgs_reader r;
     adcgs_reader_init(&r, payload->data, payload->size);
@@ -90,20 +100,20 @@ static adcgs_status measure(const adcgs_chunk_list *list, adcgs_element *e, adcg
 
 adcgs_status adcgs_element_find(adcgs_chunk_list *list, const char *name, adcgs_element *out, adcgs_error *error)
 {
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR };
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR};
     const char *const number = strchr(name, '#');
-    search s = { .name = name, .length = number ? (size_t)(number - name) : strlen(name), .left = number ? atoi(number + 1) : 0 };
+    search s = {.name = name, .length = number ? (size_t)(number - name) : strlen(name), .left = number ? atoi(number + 1) : 0};
     adcgs_stream stream;
     adcgs_buffer bytes;
     adcgs_buffer_init(&bytes);
     const adcgs_status status = adcgs_chunk_list_write(list, &bytes, error);
-    adcgs_span source = { .next = bytes.data, .left = bytes.size };
+    adcgs_span source = {.next = bytes.data, .left = bytes.size};
     /* The stream need not be valid: an element found before the first fault counts. */
     if (status == ADCGS_OK && adcgs_stream_read(&stream, adcgs_span_read, &source, &options, on_element, &s, NULL) == ADCGS_OK)
         adcgs_stream_clear(&stream, NULL);
     adcgs_buffer_clear(&bytes);
     ADCGS_TRY(status);
-    *out = (adcgs_element){ .type = type_of(name, s.length) };
+    *out = (adcgs_element){.type = type_of(name, s.length)};
     if (!s.found || out->type < 0)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "the stream has no element %s", name);
     while (out->chunk + 1 < list->n && list->chunk[out->chunk + 1].at <= s.bit / 8)

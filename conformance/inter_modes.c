@@ -12,7 +12,7 @@ static int draw(adcgs_plan *plan, int lo, int hi)
 
 static adcgs_inter_mode pick_mode(adcgs_plan *plan, uint32_t anchor)
 {
-    static const adcgs_inter_mode turns[] = { ADCGS_INTER_DROPPED, ADCGS_INTER_SAME, ADCGS_INTER_REFINED };
+    static const adcgs_inter_mode turns[] = {ADCGS_INTER_DROPPED, ADCGS_INTER_SAME, ADCGS_INTER_REFINED};
     switch (plan->kept) {
     case ADCGS_HOLD_ALL:
         return ADCGS_INTER_SAME;

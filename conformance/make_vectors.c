@@ -87,7 +87,7 @@ int main(int argc, char **argv)
 {
     static maker m;
     char path[4096];
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     if (argc < 3) {
         fprintf(stderr, "usage: make_vectors SOURCE DIR [ID ...]\n"
                         "SOURCE holds the folder recipes, DIR the folder vectors. Without ID all recipes are made.\n");

@@ -13,7 +13,7 @@ typedef struct shape {
     int absent, layers;
     int width[ADCGS_NET_LAYERS_MAX], shift[ADCGS_NET_LAYERS_MAX], residual[ADCGS_NET_LAYERS_MAX];
     int in_shift, sigma_shift, sigma_offset;
-    int limit, bias;     /**< largest magnitudes of random numbers */
+    int limit, bias; /**< largest magnitudes of random numbers */
     int e, bias_e, mode, bias_mode;
 } shape;
 
@@ -38,9 +38,14 @@ static adcgs_status is_about(const target *t, const adcgs_command *c, int *about
 static shape default_shape(int role, uint32_t n_in)
 {
     const int e24 = role < ADCGS_ROLE_PREDICTION, prior = adcgs_role_is_prior(role);
-    shape s = { .layers = role == ADCGS_ROLE_TIME || n_in == 0 ? 1 : 2, .in_shift = 2 * e24, .sigma_shift = 7 * prior,
-                .sigma_offset = 16 * prior, .limit = e24 ? 60 : 400, .bias = e24 ? 2000 : 400, .e = e24 ? 0 : 9,
-                .bias_e = e24 ? 0 : 9 };
+    shape s = {.layers = role == ADCGS_ROLE_TIME || n_in == 0 ? 1 : 2,
+               .in_shift = 2 * e24,
+               .sigma_shift = 7 * prior,
+               .sigma_offset = 16 * prior,
+               .limit = e24 ? 60 : 400,
+               .bias = e24 ? 2000 : 400,
+               .e = e24 ? 0 : 9,
+               .bias_e = e24 ? 0 : 9};
     for (int i = 0; i < ADCGS_NET_LAYERS_MAX; i++) {
         s.width[i] = 8;
         s.shift[i] = 7 * e24;
@@ -68,11 +73,20 @@ static adcgs_status shape_net(adcgs_plan *plan, const adcgs_command *c, void *us
     const struct {
         const char *name;
         int *value, *list;
-    } members[] = { { "layers", &s->layers, NULL }, { "width", NULL, s->width }, { "shift", NULL, s->shift },
-                    { "residual", NULL, s->residual }, { "in_shift", &s->in_shift, NULL }, { "limit", &s->limit, NULL },
-                    { "sigma_shift", &s->sigma_shift, NULL }, { "sigma_offset", &s->sigma_offset, NULL }, { "e", &s->e, NULL },
-                    { "bias", &s->bias, NULL }, { "bias_e", &s->bias_e, NULL }, { "mode", &s->mode, NULL },
-                    { "bias_mode", &s->bias_mode, NULL }, { "absent", &s->absent, NULL } };
+    } members[] = {{"layers", &s->layers, NULL},
+                   {"width", NULL, s->width},
+                   {"shift", NULL, s->shift},
+                   {"residual", NULL, s->residual},
+                   {"in_shift", &s->in_shift, NULL},
+                   {"limit", &s->limit, NULL},
+                   {"sigma_shift", &s->sigma_shift, NULL},
+                   {"sigma_offset", &s->sigma_offset, NULL},
+                   {"e", &s->e, NULL},
+                   {"bias", &s->bias, NULL},
+                   {"bias_e", &s->bias_e, NULL},
+                   {"mode", &s->mode, NULL},
+                   {"bias_mode", &s->bias_mode, NULL},
+                   {"absent", &s->absent, NULL}};
     int about;
     (void)plan;
     ADCGS_TRY(adcgs_command_words(c, 2, 20, error));
@@ -98,7 +112,7 @@ static adcgs_status shape_net(adcgs_plan *plan, const adcgs_command *c, void *us
 static adcgs_status fill_tensor(adcgs_tensor *t, uint32_t rows, uint32_t cols, int limit, int e, int mode, uint64_t *state,
                                 adcgs_error *error)
 {
-    *t = (adcgs_tensor){ .rows = rows, .cols = cols, .mode = (uint8_t)mode, .e = (uint8_t)e };
+    *t = (adcgs_tensor){.rows = rows, .cols = cols, .mode = (uint8_t)mode, .e = (uint8_t)e};
     t->m = adcgs_alloc(NULL, (size_t)rows * cols, sizeof *t->m, error);
     if (!t->m)
         return ADCGS_ERR_MEMORY;
@@ -113,8 +127,12 @@ static adcgs_status make_net(adcgs_plan *plan, const shape *s, int role, adcgs_n
 {
     uint32_t n_in, n_out;
     adcgs_role_shape(&plan->stream.params, role, &n_in, &n_out);
-    *net = (adcgs_net){ .present = 1, .role = (uint8_t)role, .n_layers = (uint8_t)s->layers, .in_shift = (uint8_t)s->in_shift,
-                        .sigma_shift = (uint8_t)s->sigma_shift, .sigma_offset = (int16_t)s->sigma_offset };
+    *net = (adcgs_net){.present = 1,
+                       .role = (uint8_t)role,
+                       .n_layers = (uint8_t)s->layers,
+                       .in_shift = (uint8_t)s->in_shift,
+                       .sigma_shift = (uint8_t)s->sigma_shift,
+                       .sigma_offset = (int16_t)s->sigma_offset};
     for (int i = 0; i < s->layers; i++) {
         adcgs_layer *const l = &net->layer[i];
         const int last = i == s->layers - 1;
@@ -223,7 +241,7 @@ static adcgs_status role_net(adcgs_plan *plan, uint32_t segment, int role, adcgs
     adcgs_role_shape(&plan->stream.params, role, &n_in, &n_out);
     shape s = default_shape(role, n_in);
     adcgs_net *const net = &plan->stream.segments[segment].net[role];
-    target t = { role, &s, net, 1 };
+    target t = {role, &s, net, 1};
     ADCGS_TRY(adcgs_plan_each(plan, "net", shape_net, &t, error));
     ADCGS_TRY(adcgs_plan_each(plan, "share", find_share, &t, error));
     if (s.absent)
@@ -248,6 +266,6 @@ adcgs_status adcgs_plan_nets(adcgs_plan *plan, uint32_t segment, adcgs_error *er
 
 adcgs_status adcgs_plan_set_weight(adcgs_plan *plan, const adcgs_command *command, adcgs_net *net, adcgs_error *error)
 {
-    target t = { .role = net->role, .net = net };
+    target t = {.role = net->role, .net = net};
     return set_weight(plan, command, &t, error);
 }

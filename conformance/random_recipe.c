@@ -52,7 +52,7 @@ static int edgy(writer *w, int lo, int hi)
 
 static void write_params(writer *w)
 {
-    static const int rows[] = { 1, 2, 3, 7, 40 };
+    static const int rows[] = {1, 2, 3, 7, 40};
     const int small = draw(w, 0, 3);
     w->chunks = draw(w, 1, 4);
     w->n_fg = w->chunks * draw(w, 0, small ? 3 : 32 / w->chunks);
@@ -70,8 +70,8 @@ static void write_params(writer *w)
 
 static void write_geometry(writer *w)
 {
-    static const int counts[] = { 1, 2, 63, 64, 65, 127, 128, 129, 130 };
-    static const char *const spreads[] = { "random", "random", "dense", "mixed", "ends" };
+    static const int counts[] = {1, 2, 63, 64, 65, 127, 128, 129, 130};
+    static const char *const spreads[] = {"random", "random", "dense", "mixed", "ends"};
     int depth = 0;
     w->anchors = once_in(w, 2) ? counts[draw(w, 0, COUNT(counts) - 1)] : draw(w, 1, 180);
     while (1LL << 3 * depth < w->anchors)
@@ -90,9 +90,9 @@ static void write_geometry(writer *w)
 /* Anchors and predicted segments. New anchors always find a free voxel, and no segment is left without anchors. */
 static void write_anchors(writer *w)
 {
-    static const char *const holds[] = { "all", "refined", "first", "random", "random", "none", "turns" };
-    static const char *const changes[] = { "small", "small", "escapes", "clips" };
-    static const char *const groups[] = { "", " fv", " sigma colour" };
+    static const char *const holds[] = {"all", "refined", "first", "random", "random", "none", "turns"};
+    static const char *const changes[] = {"small", "small", "escapes", "clips"};
+    static const char *const groups[] = {"", " fv", " sigma colour"};
     const int roomy = 1LL << 3 * w->depth >= 1LL * w->anchors * w->segments;
     const int hold = draw(w, 0, roomy ? COUNT(holds) - 1 : 2), predicts = once_in(w, 2);
     char text[200] = "anchors", which[40] = "predicted";
@@ -161,7 +161,7 @@ static void write_network(writer *w, const char *role, net_form form, int layers
 /* E_fv (which has one layer if it has no inputs) and F_varpi keep their default shapes. */
 static void write_networks(writer *w)
 {
-    static const char *const fg[] = { "E_fg0", "E_fg1", "E_fg2", "E_fg3" };
+    static const char *const fg[] = {"E_fg0", "E_fg1", "E_fg2", "E_fg3"};
     write_network(w, "E_Sigma", PRIOR, 8);
     write_network(w, "E_C", PRIOR, 8);
     if (w->adaptive)
@@ -177,9 +177,9 @@ static void write_networks(writer *w)
 
 static void write_values(writer *w)
 {
-    static const char *const fills[] = { "paint", "paint", "random", "zero", "edges", "escapes", "clips" };
-    static const char *const picks[] = { "random", "random", "random", "all", "none", "first", "turns" };
-    static const char *const groups[] = { "fv", "sigma", "colour", "fg" };
+    static const char *const fills[] = {"paint", "paint", "random", "zero", "edges", "escapes", "clips"};
+    static const char *const picks[] = {"random", "random", "random", "all", "none", "first", "turns"};
+    static const char *const groups[] = {"fv", "sigma", "colour", "fg"};
     line(w, "values %s", fills[draw(w, 0, COUNT(fills) - 1)]);
     line(w, "masks %s", picks[draw(w, 0, COUNT(picks) - 1)]);
     line(w, "static %s", picks[draw(w, 0, COUNT(picks) - 1)]);
@@ -191,12 +191,12 @@ static void write_values(writer *w)
 
 static void write_rest(writer *w)
 {
-    static const double sizes[][2] = { { 24, 16 }, { 17, 13 }, { 1, 1 }, { 40, 5 } };
+    static const double sizes[][2] = {{24, 16}, {17, 13}, {1, 1}, {40, 5}};
     for (int i = 0; i < 2; i++) {
         const double *const size = sizes[draw(w, 0, COUNT(sizes) - 1)];
         line(w, "camera c%d %g %g %d %d.5 %g %g 0.%02d 1 0 0 %g 0 1 0 %g 0 0 1 %g", i, size[0], size[1], draw(w, 5, 40),
-             draw(w, 5, 40), size[0] * draw(w, 0, 4) / 2, size[1] / 2, draw(w, 1, 99), draw(w, -8, 8) / 8.0,
-             draw(w, -8, 8) / 8.0, -4.0 + draw(w, 0, 5) * draw(w, 0, 1));
+             draw(w, 5, 40), size[0] * draw(w, 0, 4) / 2, size[1] / 2, draw(w, 1, 99), draw(w, -8, 8) / 8.0, draw(w, -8, 8) / 8.0,
+             -4.0 + draw(w, 0, 5) * draw(w, 0, 1));
     }
     line(w, "times %g %g %g", draw(w, -60, 300) / 1000.0, draw(w, 0, 99) / 1000.0, draw(w, 0, 1) ? 1e9 : -1.0);
     if (once_in(w, 4))
@@ -236,8 +236,8 @@ static void write_edits(writer *w)
 
 adcgs_status adcgs_random_recipe(adcgs_recipe *out, uint64_t seed, FILE *text, adcgs_error *error)
 {
-    writer w = { .recipe = out, .text = text, .state = seed, .status = ADCGS_OK, .error = error };
-    *out = (adcgs_recipe){ .n = 0 };
+    writer w = {.recipe = out, .text = text, .state = seed, .status = ADCGS_OK, .error = error};
+    *out = (adcgs_recipe){.n = 0};
     snprintf(out->id, sizeof out->id, "seed %llu", (unsigned long long)seed);
     line(&w, "seed %llu", (unsigned long long)seed);
     write_params(&w);

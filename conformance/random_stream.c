@@ -20,8 +20,8 @@
 static adcgs_status add_trace(adcgs_md5 *md5, const adcgs_buffer *file, adcgs_cpu_level cpu, int threads, int step,
                               adcgs_error *error)
 {
-    adcgs_span s = { .next = file->data, .left = file->size, .step = step };
-    adcgs_read_options options = { .cpu = cpu };
+    adcgs_span s = {.next = file->data, .left = file->size, .step = step};
+    adcgs_read_options options = {.cpu = cpu};
     adcgs_trace_sum trace;
     adcgs_stream stream;
     char hex[33];
@@ -38,7 +38,7 @@ static adcgs_status add_trace(adcgs_md5 *md5, const adcgs_buffer *file, adcgs_cp
 
 static adcgs_status add_frame(adcgs_md5 *md5, adcgs_decoder *decoder, const adcgs_camera *camera, double time, adcgs_error *error)
 {
-    adcgs_frame frame = { .width = camera->width, .height = camera->height };
+    adcgs_frame frame = {.width = camera->width, .height = camera->height};
     uint8_t digest[16];
     frame.rgb = malloc(3 * sizeof *frame.rgb * (size_t)frame.width * (size_t)frame.height);
     if (!frame.rgb)
@@ -76,7 +76,7 @@ static adcgs_status digest_of(const adcgs_plan *plan, const adcgs_buffer *file, 
     adcgs_decoder *decoder = NULL;
     adcgs_config config;
     adcgs_md5 md5;
-    adcgs_span s = { .next = file->data, .left = file->size, .step = step };
+    adcgs_span s = {.next = file->data, .left = file->size, .step = step};
     adcgs_md5_init(&md5);
     ADCGS_TRY(add_trace(&md5, file, cpu, threads, step, error));
     adcgs_config_init(&config, sizeof config);
@@ -91,7 +91,7 @@ static adcgs_status digest_of(const adcgs_plan *plan, const adcgs_buffer *file, 
 
 static adcgs_status check_ways(const adcgs_plan *plan, const adcgs_buffer *file, adcgs_error *error)
 {
-    static const int ways[][2] = { { 1, 0 }, { 4, 5 }, { 1, 1 }, { 7, 0 } }; /* threads, step */
+    static const int ways[][2] = {{1, 0}, {4, 5}, {1, 1}, {7, 0}}; /* threads, step */
     uint8_t first[16], other[16];
     ADCGS_TRY(digest_of(plan, file, ADCGS_CPU_SCALAR, 1, 0, first, error));
     for (int level = ADCGS_CPU_SCALAR; level <= (int)adcgs_cpu_best(); level++)
@@ -108,8 +108,8 @@ static adcgs_status check_ways(const adcgs_plan *plan, const adcgs_buffer *file,
 
 static adcgs_status read_all(adcgs_stream *stream, const adcgs_buffer *file, adcgs_error *error)
 {
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR };
-    adcgs_span s = { .next = file->data, .left = file->size };
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR};
+    adcgs_span s = {.next = file->data, .left = file->size};
     return adcgs_stream_read(stream, adcgs_span_read, &s, &options, NULL, NULL, error);
 }
 
@@ -180,7 +180,7 @@ static int check_seeds(uint64_t first, int64_t count)
 {
     int faults = 0;
     for (uint64_t seed = first; seed < first + (uint64_t)count; seed++) {
-        adcgs_error error = { ADCGS_OK, "" };
+        adcgs_error error = {ADCGS_OK, ""};
         if (use_seed(seed, NULL, NULL, &error) == ADCGS_OK)
             continue;
         printf("seed %llu: %s\n", (unsigned long long)seed, error.text);
@@ -194,7 +194,7 @@ int main(int argc, char **argv)
 {
     const char *const verb = argc > 2 ? argv[1] : "";
     const uint64_t seed = argc > 2 ? strtoull(argv[2], NULL, 0) : 0;
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_status status;
     if (strcmp(verb, "check") == 0 && argc == 4)
         return check_seeds(seed, strtoll(argv[3], NULL, 0));

@@ -100,7 +100,7 @@ static adcgs_status add_command(adcgs_recipe *r, const char *line, int number, i
         r->command = grown;
     }
     adcgs_command *const c = *out = &r->command[r->n];
-    *c = (adcgs_command){ .text = strdup(line), .line = number, .inherited = inherited };
+    *c = (adcgs_command){.text = strdup(line), .line = number, .inherited = inherited};
     if (!c->text)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "no memory for a recipe");
     r->n++;
@@ -151,7 +151,7 @@ static adcgs_status read_lines(adcgs_recipe *r, const char *directory, const cha
 
 adcgs_status adcgs_recipe_read(adcgs_recipe *out, const char *directory, const char *id, adcgs_error *error)
 {
-    *out = (adcgs_recipe){ .n = 0 };
+    *out = (adcgs_recipe){.n = 0};
     if (snprintf(out->id, sizeof out->id, "%s", id) >= (int)sizeof out->id)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%.80s: the name is too long", id);
     return read_lines(out, directory, id, 0, error);
@@ -168,5 +168,5 @@ void adcgs_recipe_clear(adcgs_recipe *recipe)
     while (recipe->n > 0)
         free(recipe->command[--recipe->n].text);
     free(recipe->command);
-    *recipe = (adcgs_recipe){ .n = 0 };
+    *recipe = (adcgs_recipe){.n = 0};
 }

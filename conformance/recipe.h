@@ -12,12 +12,12 @@
 #define ADCGS_WORDS 80
 
 typedef struct adcgs_command {
-    char *text;              /**< the line, cut into words */
-    int n;                   /**< words; word[0] is the verb */
+    char *text; /**< the line, cut into words */
+    int n;      /**< words; word[0] is the verb */
     char *word[ADCGS_WORDS];
-    int inherited;           /**< the line is in the base recipe */
+    int inherited; /**< the line is in the base recipe */
     int line;
-    int used;                /**< a part of the program has handled the command */
+    int used; /**< a part of the program has handled the command */
 } adcgs_command;
 
 typedef struct adcgs_recipe {

@@ -14,44 +14,41 @@ static const struct {
     int type, count;
     size_t offset;
 } numbers[] = {
-    { "seed", ADCGS_U64, 1, offsetof(adcgs_plan, seed) },
-    { "segments", ADCGS_U32, 1, offsetof(adcgs_plan, segments) },
-    { "depth", ADCGS_U8, 1, offsetof(adcgs_plan, depth) },
-    { "origin", ADCGS_F64, 3, offsetof(adcgs_plan, origin) },
-    { "voxel", ADCGS_F64, 1, offsetof(adcgs_plan, voxel) },
-    { "level", ADCGS_U8, 1, offsetof(adcgs_plan, stream.level) },
-    { "slice_log2", ADCGS_U8, 1, offsetof(adcgs_plan, stream.slice_log2) },
-    { "timebase", ADCGS_U32, 2, offsetof(adcgs_plan, stream.timebase_num) },
-    { "rate", ADCGS_U32, 2, offsetof(adcgs_plan, stream.rate_num) },
-    { "scene_origin", ADCGS_F64, 3, offsetof(adcgs_plan, stream.scene_origin) },
-    { "scene_scale", ADCGS_F64, 1, offsetof(adcgs_plan, stream.scene_scale) },
-    { "background", ADCGS_F32, 3, offsetof(adcgs_plan, stream.background) },
-    { "screen_filter", ADCGS_F32, 1, offsetof(adcgs_plan, stream.screen_filter) },
-    { "colour_space", ADCGS_U8, 1, offsetof(adcgs_plan, stream.colour_space) },
-    { "axes", ADCGS_U8, 1, offsetof(adcgs_plan, stream.axes) },
-    { "units", ADCGS_U8, 1, offsetof(adcgs_plan, stream.units) },
+    {"seed", ADCGS_U64, 1, offsetof(adcgs_plan, seed)},
+    {"segments", ADCGS_U32, 1, offsetof(adcgs_plan, segments)},
+    {"depth", ADCGS_U8, 1, offsetof(adcgs_plan, depth)},
+    {"origin", ADCGS_F64, 3, offsetof(adcgs_plan, origin)},
+    {"voxel", ADCGS_F64, 1, offsetof(adcgs_plan, voxel)},
+    {"level", ADCGS_U8, 1, offsetof(adcgs_plan, stream.level)},
+    {"slice_log2", ADCGS_U8, 1, offsetof(adcgs_plan, stream.slice_log2)},
+    {"timebase", ADCGS_U32, 2, offsetof(adcgs_plan, stream.timebase_num)},
+    {"rate", ADCGS_U32, 2, offsetof(adcgs_plan, stream.rate_num)},
+    {"scene_origin", ADCGS_F64, 3, offsetof(adcgs_plan, stream.scene_origin)},
+    {"scene_scale", ADCGS_F64, 1, offsetof(adcgs_plan, stream.scene_scale)},
+    {"background", ADCGS_F32, 3, offsetof(adcgs_plan, stream.background)},
+    {"screen_filter", ADCGS_F32, 1, offsetof(adcgs_plan, stream.screen_filter)},
+    {"colour_space", ADCGS_U8, 1, offsetof(adcgs_plan, stream.colour_space)},
+    {"axes", ADCGS_U8, 1, offsetof(adcgs_plan, stream.axes)},
+    {"units", ADCGS_U8, 1, offsetof(adcgs_plan, stream.units)},
 };
 
-static const char *const picks[] = { "random", "all", "none", "first", "turns", NULL };
-static const char *const spreads[] = { "random", "dense", "plane", "line", "mixed", "ends", NULL };
-static const char *const fills[] = { "paint", "random", "zero", "edges", "escapes", "clips", NULL };
+static const char *const picks[] = {"random", "all", "none", "first", "turns", NULL};
+static const char *const spreads[] = {"random", "dense", "plane", "line", "mixed", "ends", NULL};
+static const char *const fills[] = {"paint", "random", "zero", "edges", "escapes", "clips", NULL};
 
-static const char *const holds[] = { "random", "all", "refined", "none", "first", "turns", NULL };
+static const char *const holds[] = {"random", "all", "refined", "none", "first", "turns", NULL};
 
-static const char *const digests[] = { "all", "none", NULL };
+static const char *const digests[] = {"all", "none", NULL};
 
 static const struct {
     const char *verb;
     const char *const *names;
     size_t offset;
 } choices[] = {
-    { "masks", picks, offsetof(adcgs_plan, masks) },
-    { "static", picks, offsetof(adcgs_plan, statics) },
-    { "bodies", picks, offsetof(adcgs_plan, bodies) },
-    { "positions", spreads, offsetof(adcgs_plan, positions) },
-    { "values", fills, offsetof(adcgs_plan, values) },
-    { "kept", holds, offsetof(adcgs_plan, kept) },
-    { "digest", digests, offsetof(adcgs_plan, no_digest) },
+    {"masks", picks, offsetof(adcgs_plan, masks)},        {"static", picks, offsetof(adcgs_plan, statics)},
+    {"bodies", picks, offsetof(adcgs_plan, bodies)},      {"positions", spreads, offsetof(adcgs_plan, positions)},
+    {"values", fills, offsetof(adcgs_plan, values)},      {"kept", holds, offsetof(adcgs_plan, kept)},
+    {"digest", digests, offsetof(adcgs_plan, no_digest)},
 };
 
 adcgs_status adcgs_plan_each(adcgs_plan *plan, const char *verb, adcgs_command_fn fn, void *user, adcgs_error *error)
@@ -100,7 +97,7 @@ static adcgs_status set_number(void *place, int type, const char *word, adcgs_er
 static adcgs_status set_numbers(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     const size_t i = *(const size_t *)user;
-    static const size_t bytes[] = { [ADCGS_U8] = 1, [ADCGS_U32] = 4, [ADCGS_U64] = 8, [ADCGS_F32] = 4, [ADCGS_F64] = 8 };
+    static const size_t bytes[] = {[ADCGS_U8] = 1, [ADCGS_U32] = 4, [ADCGS_U64] = 8, [ADCGS_F32] = 4, [ADCGS_F64] = 8};
     ADCGS_TRY(adcgs_command_words(c, numbers[i].count, numbers[i].count, error));
     for (int k = 0; k < numbers[i].count; k++)
         ADCGS_TRY(set_number((uint8_t *)plan + numbers[i].offset + (size_t)k * bytes[numbers[i].type], numbers[i].type,
@@ -125,11 +122,20 @@ static adcgs_status set_params(adcgs_plan *plan, const adcgs_command *c, void *u
         const char *name;
         uint8_t *byte;
         uint16_t *word;
-    } members[] = { { "k", &p->k, NULL }, { "n_fv", &p->n_fv, NULL }, { "n_fg", &p->n_fg, NULL }, { "chunks", &p->chunks, NULL },
-                    { "n_eta", &p->n_eta, NULL }, { "octaves", &p->octaves, NULL }, { "fine_uses_fv", &p->fine_uses_fv, NULL },
-                    { "coarse_rotation", &p->coarse_rotation, NULL }, { "adaptive_steps", &p->adaptive_steps, NULL },
-                    { "spans", &p->spans, NULL }, { "bodies", &p->bodies, NULL }, { "smooth_time", &p->smooth_time, NULL },
-                    { "time_rows", NULL, &p->time_rows }, { "time_width", NULL, &p->time_width } };
+    } members[] = {{"k", &p->k, NULL},
+                   {"n_fv", &p->n_fv, NULL},
+                   {"n_fg", &p->n_fg, NULL},
+                   {"chunks", &p->chunks, NULL},
+                   {"n_eta", &p->n_eta, NULL},
+                   {"octaves", &p->octaves, NULL},
+                   {"fine_uses_fv", &p->fine_uses_fv, NULL},
+                   {"coarse_rotation", &p->coarse_rotation, NULL},
+                   {"adaptive_steps", &p->adaptive_steps, NULL},
+                   {"spans", &p->spans, NULL},
+                   {"bodies", &p->bodies, NULL},
+                   {"smooth_time", &p->smooth_time, NULL},
+                   {"time_rows", NULL, &p->time_rows},
+                   {"time_width", NULL, &p->time_width}};
     (void)user;
     for (int i = 1; i < c->n; i++) {
         int64_t value = -1;
@@ -196,8 +202,8 @@ static adcgs_status set_tiers(adcgs_plan *plan, const adcgs_command *c, void *us
 /* differences HOW GROUP ...: of these groups; of all groups if none is named */
 static adcgs_status set_differences(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
-    static const char *const changes[] = { "small", "escapes", "clips", NULL };
-    static const char *const groups[] = { "fv", "sigma", "colour", NULL };
+    static const char *const changes[] = {"small", "escapes", "clips", NULL};
+    static const char *const groups[] = {"fv", "sigma", "colour", NULL};
     (void)user;
     ADCGS_TRY(adcgs_command_words(c, 1, 1 + ADCGS_INTER_GROUPS, error));
     ADCGS_TRY(adcgs_word_choice(c->word[1], changes, &plan->differences, error));
@@ -267,8 +273,13 @@ static adcgs_status parse_camera(const adcgs_command *c, adcgs_camera *out, adcg
     ADCGS_TRY(adcgs_word_int(c->word[3], 1, 16384, &height, error));
     for (int i = 0; i < 17; i++)
         ADCGS_TRY(adcgs_word_real(c->word[4 + i], &real[i], error));
-    *out = (adcgs_camera){ .width = (int32_t)width, .height = (int32_t)height, .fx = real[0], .fy = real[1], .cx = real[2],
-                           .cy = real[3], .near_plane = real[4] };
+    *out = (adcgs_camera){.width = (int32_t)width,
+                          .height = (int32_t)height,
+                          .fx = real[0],
+                          .fy = real[1],
+                          .cx = real[2],
+                          .cy = real[3],
+                          .near_plane = real[4]};
     memcpy(out->cam_to_world, real + 5, sizeof out->cam_to_world);
     snprintf(out->name, sizeof out->name, "%s", c->word[1]);
     return ADCGS_OK;
@@ -328,11 +339,10 @@ static adcgs_status add_meta(adcgs_plan *plan, const adcgs_command *c, void *use
 
 static void set_defaults(adcgs_plan *plan)
 {
-    *plan = (adcgs_plan){ .seed = 1, .segments = 1, .depth = 4, .origin = { -1, -1, -1 },
-                          .changed = (1 << ADCGS_INTER_GROUPS) - 1 };
+    *plan = (adcgs_plan){.seed = 1, .segments = 1, .depth = 4, .origin = {-1, -1, -1}, .changed = (1 << ADCGS_INTER_GROUPS) - 1};
     adcgs_stream_init(&plan->stream);
     plan->stream.level = 1;
-    plan->stream.params = (adcgs_params){ .k = 1, .n_fv = 4, .chunks = 1 };
+    plan->stream.params = (adcgs_params){.k = 1, .n_fv = 4, .chunks = 1};
     plan->stream.background[0] = 0.25f;
     plan->stream.background[2] = 0.5f;
     for (int i = 0; i < ADCGS_PLAN_SEGMENTS; i++) {
@@ -345,9 +355,16 @@ static void set_defaults(adcgs_plan *plan)
 /* Unless the recipe names its own: a camera that sees the cube, the start of the stream, and, if it moves, a later time. */
 static void default_views(adcgs_plan *plan)
 {
-    static const adcgs_camera front = { .width = 24, .height = 16, .fx = 20, .fy = 20, .cx = 12, .cy = 8, .near_plane = 0.01,
-                                        .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3 }, .name = "front" };
-    static const double moments[] = { 0.0, 0.0137 };
+    static const adcgs_camera front = {.width = 24,
+                                       .height = 16,
+                                       .fx = 20,
+                                       .fy = 20,
+                                       .cx = 12,
+                                       .cy = 8,
+                                       .near_plane = 0.01,
+                                       .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3},
+                                       .name = "front"};
+    static const double moments[] = {0.0, 0.0137};
     if (plan->n_cameras == 0)
         plan->cameras[plan->n_cameras++] = front;
     if (plan->n_times == 0) {
@@ -361,11 +378,12 @@ adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error
     static const struct {
         const char *verb;
         adcgs_command_fn fn;
-    } others[] = { { "params", set_params }, { "anchors", set_anchors }, { "ticks", set_ticks }, { "times", add_time },
-                   { "reach", set_reach },
-                   { "layers", set_fewer }, { "predicted", set_predicted }, { "differences", set_differences },
-                   { "tiers", set_tiers },
-                   { "camera", add_camera }, { "stored", add_stored }, { "meta", add_meta } };
+    } others[] = {{"params", set_params},       {"anchors", set_anchors},
+                  {"ticks", set_ticks},         {"times", add_time},
+                  {"reach", set_reach},         {"layers", set_fewer},
+                  {"predicted", set_predicted}, {"differences", set_differences},
+                  {"tiers", set_tiers},         {"camera", add_camera},
+                  {"stored", add_stored},       {"meta", add_meta}};
     set_defaults(plan);
     plan->recipe = recipe;
     for (size_t i = 0; i < ADCGS_COUNTOF(numbers); i++)

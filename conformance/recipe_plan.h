@@ -33,8 +33,8 @@ typedef enum adcgs_spread {
 
 /** Values that no command forces. */
 typedef enum adcgs_fill {
-    ADCGS_FILL_PAINT,   /**< extents and colours for a visible image, the rest small */
-    ADCGS_FILL_RANDOM,  /**< small, occasionally large */
+    ADCGS_FILL_PAINT,  /**< extents and colours for a visible image, the rest small */
+    ADCGS_FILL_RANDOM, /**< small, occasionally large */
     ADCGS_FILL_ZERO,
     ADCGS_FILL_EDGES,   /**< the outermost symbols of the tables */
     ADCGS_FILL_ESCAPES, /**< escape codes of every length and both signs */
@@ -48,7 +48,7 @@ typedef enum adcgs_hold {
     ADCGS_HOLD_REFINED, /**< all, with differences */
     ADCGS_HOLD_NONE,
     ADCGS_HOLD_FIRST,
-    ADCGS_HOLD_TURNS    /**< dropped, unchanged, refined, in turn */
+    ADCGS_HOLD_TURNS /**< dropped, unchanged, refined, in turn */
 } adcgs_hold;
 
 /** Differences of refined anchors. */
@@ -77,12 +77,12 @@ typedef struct adcgs_plan {
     uint32_t segments;
     uint32_t anchors[ADCGS_PLAN_SEGMENTS]; /**< in predicted segments: new anchors */
     int predicted[ADCGS_PLAN_SEGMENTS];
-    int kept, differences, changed; /**< adcgs_hold, adcgs_change; bits: groups with differences */
+    int kept, differences, changed;         /**< adcgs_hold, adcgs_change; bits: groups with differences */
     int tiers, growth[ADCGS_TIERS_MAX - 1]; /**< of segments that are not predicted */
     uint8_t depth;
     double origin[3], voxel; /**< voxel 0: the cube's edge is 2 */
     int64_t ticks[2 * ADCGS_PLAN_SEGMENTS];
-    uint32_t reach[ADCGS_PLAN_SEGMENTS]; /**< ticks */
+    uint32_t reach[ADCGS_PLAN_SEGMENTS];           /**< ticks */
     int masks, statics, bodies, positions, values; /**< adcgs_pick, adcgs_spread, adcgs_fill */
     int no_digest;
     adcgs_stream stream;

@@ -10,7 +10,7 @@ adcgs_status adcgs_slices_read(adcgs_slices *out, const adcgs_buffer *payload, a
 {
     adcgs_reader r;
     adcgs_reader_init(&r, payload->data, payload->size);
-    *out = (adcgs_slices){ .first = adcgs_read_varint(&r), .n = 0 };
+    *out = (adcgs_slices){.first = adcgs_read_varint(&r), .n = 0};
     const uint32_t n = adcgs_read_varint(&r);
     uint32_t *const bytes = calloc((size_t)n + 1, sizeof *bytes);
     out->data = calloc((size_t)n + 1, sizeof *out->data);
@@ -44,5 +44,5 @@ void adcgs_slices_clear(adcgs_slices *slices)
         adcgs_buffer_clear(&slices->data[i]);
     free(slices->data);
     free(slices->damage);
-    *slices = (adcgs_slices){ .n = 0 };
+    *slices = (adcgs_slices){.n = 0};
 }

@@ -86,10 +86,10 @@ static void code_bits(adcgs_script *s, int64_t value, int64_t n)
  */
 int adcgs_script_step(adcgs_script *s, const adcgs_command *c, adcgs_status *status, adcgs_error *error)
 {
-    static const char *const verbs[] = { "bits", "flag", "tree", "unary", "tail", "value", NULL };
-    static const int words[] = { 2, 2, 3, 3, 3, 3 };
-    static const int named[] = { 0, 1, 1, 1, 1, 0 };
-    int64_t v[3] = { 0, 0, 0 };
+    static const char *const verbs[] = {"bits", "flag", "tree", "unary", "tail", "value", NULL};
+    static const int words[] = {2, 2, 3, 3, 3, 3};
+    static const int named[] = {0, 1, 1, 1, 1, 0};
+    int64_t v[3] = {0, 0, 0};
     int verb;
     if (adcgs_word_choice(c->word[0], verbs, &verb, NULL) != ADCGS_OK)
         return 0;

@@ -12,7 +12,7 @@
 
 static adcgs_camera choose_camera(const adcgs_decoder *decoder, const adcgs_info *info)
 {
-    adcgs_camera camera = { .width = 640, .height = 480, .fx = 600, .fy = 600, .cx = 320, .cy = 240 };
+    adcgs_camera camera = {.width = 640, .height = 480, .fx = 600, .fy = 600, .cx = 320, .cy = 240};
     if (info->cameras > 0 && adcgs_get_camera(decoder, 0, &camera, NULL) == ADCGS_OK)
         return camera;
     for (int axis = 0; axis < 3; axis++) { /* axes as the world's, 4 scene units back along z */
@@ -70,7 +70,7 @@ static adcgs_status render(const char *input, const char *output, double seconds
 
 int main(int argc, char **argv)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     if (argc < 3 || argc > 4) {
         fprintf(stderr, "usage: %s FILE OUT.ppm [SECONDS]\n", argv[0]);
         return 2;

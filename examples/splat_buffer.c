@@ -13,9 +13,9 @@
 
 /* struct Splat { vec3 mean; float opacity; vec3 scale; float pad0; vec4 rotation; vec3 colour; float pad1; }; */
 typedef struct gpu_splat {
-    float mean[3];     /* world units */
-    float opacity;     /* 0..0.99 */
-    float scale[3];    /* world units */
+    float mean[3];  /* world units */
+    float opacity;  /* 0..0.99 */
+    float scale[3]; /* world units */
     float pad0;
     float rotation[4]; /* unit quaternion x, y, z, w, the usual order in shaders */
     float colour[3];   /* RGB */
@@ -24,7 +24,7 @@ typedef struct gpu_splat {
 
 static gpu_splat pack(const adcgs_primitives *p, uint32_t i, const adcgs_info *info)
 {
-    gpu_splat s = { .opacity = p->opacity[i] };
+    gpu_splat s = {.opacity = p->opacity[i]};
     for (int c = 0; c < 3; c++) {
         s.mean[c] = (float)(info->scene_origin[c] + info->scene_scale * (double)p->mean[c][i]);
         s.scale[c] = (float)(info->scene_scale * (double)p->scale[c][i]);
@@ -78,7 +78,7 @@ static adcgs_status convert(const char *input, const char *output, double second
 
 int main(int argc, char **argv)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     if (argc < 3 || argc > 4) {
         fprintf(stderr, "usage: %s FILE OUT.bin [SECONDS]\n", argv[0]);
         return 2;

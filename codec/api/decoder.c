@@ -28,7 +28,7 @@ typedef struct origin {
     adcgs_read_fn read;
     adcgs_read_at_fn read_at; /**< NULL: sequential only */
     void *user;
-    uint64_t size, at;        /**< of read_at: total size, and bytes read in order so far */
+    uint64_t size, at; /**< of read_at: total size, and bytes read in order so far */
 } origin;
 
 /** Read sequentially from a source with random access. */
@@ -70,8 +70,8 @@ static adcgs_status open_stream(adcgs_decoder *d, origin *from, const adcgs_read
         return ADCGS_OK;
     const adcgs_read_fn read = from->read_at ? read_in_order : from->read;
     void *const user = from->read_at ? from : from->user;
-    return options->tune_in ? adcgs_push_read(&d->stream, read, user, options, error) :
-                           adcgs_stream_read(&d->stream, read, user, options, NULL, NULL, error);
+    return options->tune_in ? adcgs_push_read(&d->stream, read, user, options, error)
+                            : adcgs_stream_read(&d->stream, read, user, options, NULL, NULL, error);
 }
 
 /** from: NULL: bytes will be pushed. */
@@ -84,7 +84,7 @@ static adcgs_status open_decoder(adcgs_decoder *d, origin *from, const adcgs_con
         ADCGS_TRY(adcgs_pool_create(&d->own_pool, config->threads, error));
     d->pool = config->pool ? config->pool : d->own_pool;
     d->memory.limit = config->memory_limit;
-    d->log = (adcgs_log){ config->log, config->log_user };
+    d->log = (adcgs_log){config->log, config->log_user};
     const adcgs_read_options options = {
         .cpu = d->cpu,
         .pool = d->pool,
@@ -127,7 +127,7 @@ adcgs_status adcgs_open_stream(adcgs_decoder **out, adcgs_read_fn read, void *us
     ADCGS_REQUIRE(out, error);
     *out = NULL;
     ADCGS_REQUIRE(read, error);
-    return open_from(out, &(origin){ .read = read, .user = user }, config, error);
+    return open_from(out, &(origin){.read = read, .user = user}, config, error);
 }
 
 adcgs_status adcgs_open_at(adcgs_decoder **out, adcgs_read_at_fn read, void *user, uint64_t bytes, const adcgs_config *config,
@@ -137,7 +137,7 @@ adcgs_status adcgs_open_at(adcgs_decoder **out, adcgs_read_at_fn read, void *use
     ADCGS_REQUIRE(out, error);
     *out = NULL;
     ADCGS_REQUIRE(read, error);
-    return open_from(out, &(origin){ .read_at = read, .user = user, .size = bytes }, config, error);
+    return open_from(out, &(origin){.read_at = read, .user = user, .size = bytes}, config, error);
 }
 
 void adcgs_close(adcgs_decoder **decoder)

@@ -25,7 +25,7 @@ static void interleave(void *arg, int index, int thread)
 
 static void interleave_all(adcgs_decoder *d, const adcgs_frame *frame)
 {
-    interleave_job job = { d->planar, frame };
+    interleave_job job = {d->planar, frame};
     adcgs_pool_run(d->pool, interleave, &job, (frame->height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
 }
 
@@ -84,8 +84,8 @@ static void fade(void *arg, int index, int thread)
 static adcgs_status draw_one(adcgs_decoder *d, const picture *p, const adcgs_primitives *primitives, int depth, float *planes,
                              adcgs_error *error)
 {
-    return depth ? adcgs_raster_depth(d->raster, primitives, &p->view, d->stream.screen_filter, planes, error) :
-                   adcgs_raster_forward(d->raster, primitives, &p->view, d->stream.background, d->stream.screen_filter, planes, 0,
+    return depth ? adcgs_raster_depth(d->raster, primitives, &p->view, d->stream.screen_filter, planes, error)
+                 : adcgs_raster_forward(d->raster, primitives, &p->view, d->stream.background, d->stream.screen_filter, planes, 0,
                                         error);
 }
 
@@ -96,7 +96,7 @@ static adcgs_status draw(adcgs_decoder *d, const picture *p, int depth, adcgs_er
     if (!p->state.fades)
         return ADCGS_OK;
     ADCGS_TRY(draw_one(d, p, &p->state.before, depth, p->before, error));
-    fade_job job = { p->before, d->planar, 3 * p->plane, 3 * ROWS_PER_JOB * (size_t)p->view.width, p->state.weight };
+    fade_job job = {p->before, d->planar, 3 * p->plane, 3 * ROWS_PER_JOB * (size_t)p->view.width, p->state.weight};
     adcgs_pool_run(d->pool, fade, &job, (p->view.height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
     return ADCGS_OK;
 }
@@ -173,14 +173,13 @@ adcgs_status adcgs_render_rgba8(adcgs_decoder *decoder, const adcgs_camera *came
     ADCGS_TRY(prepare(d, camera, time, 4, &p, error));
     const int width = p.view.width, height = p.view.height;
     if (stride < 4 * (ptrdiff_t)width && stride > -4 * (ptrdiff_t)width)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "stride is %td bytes, expected at least %d in magnitude", stride,
-                          4 * width);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stride is %td bytes, expected at least %d in magnitude", stride, 4 * width);
     if (alpha != ADCGS_ALPHA_OPAQUE) {
         ADCGS_TRY(draw(d, &p, 1, error));
         memcpy(d->planar + 3 * p.plane, d->planar + p.plane, p.plane * sizeof *d->planar);
     }
     ADCGS_TRY(draw(d, &p, 0, error));
-    rgba8_job job = { d->planar, (size_t)width, (size_t)height, d->stream.background, alpha, pixels, stride };
+    rgba8_job job = {d->planar, (size_t)width, (size_t)height, d->stream.background, alpha, pixels, stride};
     adcgs_pool_run(d->pool, pack_rgba8, &job, (height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
     return ADCGS_OK;
 }
@@ -220,7 +219,7 @@ adcgs_status adcgs_render_depth(adcgs_decoder *decoder, const adcgs_camera *came
     ADCGS_REQUIRE(camera, error);
     ADCGS_TRY(prepare(d, camera, time, 3, &p, error));
     ADCGS_TRY(draw(d, &p, 1, error));
-    divide_job job = { d->planar, (size_t)p.view.width, (size_t)p.view.height, d->stream.scene_scale, depth, alpha };
+    divide_job job = {d->planar, (size_t)p.view.width, (size_t)p.view.height, d->stream.scene_scale, depth, alpha};
     adcgs_pool_run(d->pool, divide, &job, (p.view.height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
     return ADCGS_OK;
 }

@@ -32,8 +32,8 @@ adcgs_status adcgs_open_file(adcgs_decoder **out, const char *path, const adcgs_
     if (!file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
     const int64_t size = asks_for_any_order(config) ? size_of(file) : -1;
-    const adcgs_status status = size >= 0 ? adcgs_open_at(out, adcgs_file_read_at, file, (uint64_t)size, config, error) :
-                                            adcgs_open_stream(out, adcgs_file_read, file, config, error);
+    const adcgs_status status = size >= 0 ? adcgs_open_at(out, adcgs_file_read_at, file, (uint64_t)size, config, error)
+                                          : adcgs_open_stream(out, adcgs_file_read, file, config, error);
     if (status == ADCGS_OK && (*out)->seek)
         (*out)->file = file;
     else
@@ -57,7 +57,7 @@ adcgs_status adcgs_open_memory(adcgs_decoder **out, const void *data, size_t byt
     ADCGS_OWN_ERROR(error);
     if (bytes > 0)
         ADCGS_REQUIRE(data, error);
-    adcgs_span s = { .next = data, .left = bytes };
+    adcgs_span s = {.next = data, .left = bytes};
     if (config && adcgs_config_read(&own, config, NULL) == ADCGS_OK && own.conceal)
         return adcgs_open_at(out, read_memory_at, &s, bytes, config, error); /* concealment reads the whole stream at once */
     return adcgs_open_stream(out, adcgs_span_read, &s, config, error);

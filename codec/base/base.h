@@ -146,11 +146,11 @@ typedef struct adcgs_time {
 adcgs_time adcgs_time_now(void);
 static inline adcgs_time adcgs_time_less(adcgs_time a, adcgs_time b)
 {
-    return (adcgs_time){ a.clock - b.clock, a.cpu - b.cpu };
+    return (adcgs_time){a.clock - b.clock, a.cpu - b.cpu};
 }
 static inline adcgs_time adcgs_time_plus(adcgs_time a, adcgs_time b)
 {
-    return (adcgs_time){ a.clock + b.clock, a.cpu + b.cpu };
+    return (adcgs_time){a.clock + b.clock, a.cpu + b.cpu};
 }
 
 #define ADCGS_MIN(a, b) ((a) < (b) ? (a) : (b))

@@ -20,5 +20,5 @@ double adcgs_seconds(void)
 
 adcgs_time adcgs_time_now(void)
 {
-    return (adcgs_time){ adcgs_seconds(), read_clock(CLOCK_PROCESS_CPUTIME_ID) };
+    return (adcgs_time){adcgs_seconds(), read_clock(CLOCK_PROCESS_CPUTIME_ID)};
 }

@@ -6,7 +6,7 @@
 
 #include "base/cpu_detect.h"
 
-const char *const adcgs_cpu_names[] = { "auto", "scalar", "avx2", "avx512", NULL };
+const char *const adcgs_cpu_names[] = {"auto", "scalar", "avx2", "avx512", NULL};
 #define LEVELS (ADCGS_COUNTOF(adcgs_cpu_names) - 1)
 
 adcgs_cpu_level adcgs_cpu_best(void)

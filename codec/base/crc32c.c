@@ -6,7 +6,9 @@
  */
 #include "base/digest.h"
 
+/* clang-format off */
 #define BIT(i, b, c) ((i) >> (b) & 1 ? (c) : 0u)
+/* clang-format on */
 #define ENTRY(i, c0, c1, c2, c3, c4, c5, c6, c7)                                                                     \
     (BIT(i, 0, c0) ^ BIT(i, 1, c1) ^ BIT(i, 2, c2) ^ BIT(i, 3, c3) ^ BIT(i, 4, c4) ^ BIT(i, 5, c5) ^ BIT(i, 6, c6) ^ \
      BIT(i, 7, c7))
@@ -15,8 +17,10 @@
     ENTRIES4(i, __VA_ARGS__), ENTRIES4(i + 4, __VA_ARGS__), ENTRIES4(i + 8, __VA_ARGS__), ENTRIES4(i + 12, __VA_ARGS__)
 #define ENTRIES64(i, ...) \
     ENTRIES16(i, __VA_ARGS__), ENTRIES16(i + 16, __VA_ARGS__), ENTRIES16(i + 32, __VA_ARGS__), ENTRIES16(i + 48, __VA_ARGS__)
+/* clang-format off */
 #define TABLE(...) \
     { ENTRIES64(0, __VA_ARGS__), ENTRIES64(64, __VA_ARGS__), ENTRIES64(128, __VA_ARGS__), ENTRIES64(192, __VA_ARGS__) }
+/* clang-format on */
 
 /* table[k][i]: the value that index i becomes after k + 1 more bytes. */
 static const uint32_t table[8][256] = {

@@ -66,9 +66,10 @@ FMA_INLINE float adcgs_fma1(float a, float b, float c)
 /* adcgs_sum_to_odd() for two lanes. */
 static __attribute__((noinline, unused)) v128_t adcgs_sums_to_odd(v128_t p, v128_t c, v128_t sum)
 {
-    return wasm_f64x2_make(
-        adcgs_sum_to_odd(wasm_f64x2_extract_lane(p, 0), wasm_f64x2_extract_lane(c, 0), wasm_f64x2_extract_lane(sum, 0)),
-        adcgs_sum_to_odd(wasm_f64x2_extract_lane(p, 1), wasm_f64x2_extract_lane(c, 1), wasm_f64x2_extract_lane(sum, 1)));
+    return wasm_f64x2_make(adcgs_sum_to_odd(wasm_f64x2_extract_lane(p, 0), wasm_f64x2_extract_lane(c, 0),
+                                            wasm_f64x2_extract_lane(sum, 0)),
+                           adcgs_sum_to_odd(wasm_f64x2_extract_lane(p, 1), wasm_f64x2_extract_lane(c, 1),
+                                            wasm_f64x2_extract_lane(sum, 1)));
 }
 
 FMA_INLINE v128_t adcgs_fma4(v128_t a, v128_t b, v128_t c)
@@ -80,8 +81,8 @@ FMA_INLINE v128_t adcgs_fma4(v128_t a, v128_t b, v128_t c)
     v128_t s0 = wasm_f64x2_add(p0, c0), s1 = wasm_f64x2_add(p1, c1);
     const v128_t low = wasm_i32x4_shuffle(s0, s1, 0, 2, 4, 6), high = wasm_i32x4_shuffle(s0, s1, 1, 3, 5, 7);
     const v128_t tie = wasm_i32x4_eq(wasm_v128_and(low, wasm_i32x4_splat(FMA_CUT)), wasm_i32x4_splat(FMA_TIE));
-    const v128_t small = wasm_u32x4_lt(wasm_i32x4_sub(wasm_i32x4_shl(high, 1), wasm_i32x4_splat(1)),
-                                       wasm_i32x4_splat(FMA_NORMAL - 1));
+    const v128_t small =
+        wasm_u32x4_lt(wasm_i32x4_sub(wasm_i32x4_shl(high, 1), wasm_i32x4_splat(1)), wasm_i32x4_splat(FMA_NORMAL - 1));
     if (wasm_v128_any_true(wasm_v128_or(tie, small))) {
         s0 = adcgs_sums_to_odd(p0, c0, s0);
         s1 = adcgs_sums_to_odd(p1, c1, s1);

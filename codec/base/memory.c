@@ -37,7 +37,7 @@ void *adcgs_alloc(adcgs_memory *memory, size_t count, size_t size, adcgs_error *
     }
     const uintptr_t first = (uintptr_t)base + sizeof(block_header);
     uint8_t *user = base + sizeof(block_header) + (ALIGNMENT - first % ALIGNMENT) % ALIGNMENT;
-    const block_header header = { base, bytes };
+    const block_header header = {base, bytes};
     memcpy(user - sizeof header, &header, sizeof header);
     if (memory) {
         memory->used += bytes;

@@ -27,7 +27,7 @@ adcgs_status adcgs_pool_create(adcgs_pool **out, int threads, adcgs_error *error
     *out = NULL;
     if (threads < 0 || threads > ADCGS_THREADS_MAX)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads requested, expected 0..%d", threads, ADCGS_THREADS_MAX);
-    return create(out, (adcgs_pool){ .threads = 1 }, error);
+    return create(out, (adcgs_pool){.threads = 1}, error);
 }
 
 adcgs_status adcgs_pool_wrap(adcgs_pool **out, int threads, adcgs_run_fn run, void *user, adcgs_error *error)
@@ -36,7 +36,7 @@ adcgs_status adcgs_pool_wrap(adcgs_pool **out, int threads, adcgs_run_fn run, vo
     if (threads < 1 || threads > ADCGS_THREADS_MAX || !run)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads lent, expected 1..%d and a function that runs tasks on them",
                           threads, ADCGS_THREADS_MAX);
-    return create(out, (adcgs_pool){ threads, run, user }, error);
+    return create(out, (adcgs_pool){threads, run, user}, error);
 }
 
 void adcgs_pool_free(adcgs_pool **pool)

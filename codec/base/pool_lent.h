@@ -32,7 +32,7 @@ static void lent_task(void *work, int task)
 
 static void run_lent(adcgs_run_fn run, void *user, int threads, adcgs_work_fn fn, void *arg, int n)
 {
-    lent_work w = { .fn = fn, .arg = arg, .n = n };
+    lent_work w = {.fn = fn, .arg = arg, .n = n};
     atomic_init(&w.next, 0);
     run(user, lent_task, &w, ADCGS_MIN(threads, n));
 }

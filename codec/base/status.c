@@ -12,16 +12,16 @@ typedef struct status_row {
 } status_row;
 
 static const status_row rows[] = {
-    { ADCGS_OK, "success" },
-    { ADCGS_ERR_USAGE, "wrong use" },
-    { ADCGS_ERR_MEMORY, "out of memory" },
-    { ADCGS_ERR_IO, "input/output error" },
-    { ADCGS_ERR_DATA, "invalid data" },
-    { ADCGS_ERR_TRUNCATED, "truncated data" },
-    { ADCGS_ERR_UNSUPPORTED, "unsupported" },
-    { ADCGS_ERR_LIMIT, "limit exceeded" },
-    { ADCGS_ERR_FPENV, "no strict binary32" },
-    { ADCGS_ERR_INTERNAL, "internal error" },
+    {ADCGS_OK, "success"},
+    {ADCGS_ERR_USAGE, "wrong use"},
+    {ADCGS_ERR_MEMORY, "out of memory"},
+    {ADCGS_ERR_IO, "input/output error"},
+    {ADCGS_ERR_DATA, "invalid data"},
+    {ADCGS_ERR_TRUNCATED, "truncated data"},
+    {ADCGS_ERR_UNSUPPORTED, "unsupported"},
+    {ADCGS_ERR_LIMIT, "limit exceeded"},
+    {ADCGS_ERR_FPENV, "no strict binary32"},
+    {ADCGS_ERR_INTERNAL, "internal error"},
 };
 
 static const status_row *find_row(adcgs_status status)

@@ -21,8 +21,8 @@ void adcgs_strict_scalar(float out[ADCGS_STRICT_FUNCTIONS][ADCGS_STRICT_SAMPLES]
  * compiled like those of the codec. */
 adcgs_status adcgs_strict_modes(adcgs_error *error)
 {
-    volatile uint32_t bits[] = { 0x3f800001, 0x3f7ffffe, 0x3f800000, 0x00800000, 0x00000001, 0x33800000, 0x40000000, 0x40400000,
-                                 0x80000000 };
+    volatile uint32_t bits[] = {0x3f800001, 0x3f7ffffe, 0x3f800000, 0x00800000, 0x00000001,
+                                0x33800000, 0x40000000, 0x40400000, 0x80000000};
     float v[ADCGS_COUNTOF(bits)];
     for (size_t i = 0; i < ADCGS_COUNTOF(bits); i++)
         v[i] = adcgs_bits_float(bits[i]);
@@ -60,8 +60,10 @@ static adcgs_status check_level(adcgs_cpu_level level, adcgs_strict_fn *fn, adcg
             crc = adcgs_crc32c(crc, word, sizeof word);
         }
     if (crc != ANSWER)
-        return adcgs_fail(error, ADCGS_ERR_FPENV, "binary32 arithmetic (%s): known-answer test gives 0x%08x, expected 0x%08x: "
-                          "check the flags of the build", adcgs_cpu_name(level), (unsigned)crc, ANSWER);
+        return adcgs_fail(error, ADCGS_ERR_FPENV,
+                          "binary32 arithmetic (%s): known-answer test gives 0x%08x, expected 0x%08x: "
+                          "check the flags of the build",
+                          adcgs_cpu_name(level), (unsigned)crc, ANSWER);
     return ADCGS_OK;
 }
 

@@ -24,7 +24,7 @@ static void answer_lanes(float *const out[6], size_t at, const float *px, const 
 
 static void answer(float out[ADCGS_STRICT_FUNCTIONS][ADCGS_STRICT_SAMPLES], const float *x, const float *y, const float *z)
 {
-    float *const lanes[6] = { out[9], out[10], out[11], out[12], out[13], out[14] };
+    float *const lanes[6] = {out[9], out[10], out[11], out[12], out[13], out[14]};
     for (int i = 0; i < ADCGS_STRICT_SAMPLES; i++) {
         out[0][i] = x[i] * y[i] + z[i];
         out[1][i] = z[i] - x[i] * y[i];

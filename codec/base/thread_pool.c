@@ -28,18 +28,18 @@ typedef struct worker {
 
 struct adcgs_pool {
     int threads, started;
-    int missing;           /* threads that could not be started */
+    int missing; /* threads that could not be started */
     pthread_mutex_t mutex;
     pthread_cond_t wake, finished;
-    int sleepers;          /* workers waiting on wake; under mutex */
-    int caller_waits;      /* under mutex */
+    int sleepers;     /* workers waiting on wake; under mutex */
+    int caller_waits; /* under mutex */
     atomic_int stop;
     atomic_uint_least64_t ticket;
     atomic_int n, done;
     _Atomic(adcgs_work_fn) fn;
     _Atomic(void *) arg;
-    worker *workers; /* [threads - 1] */
-    pthread_mutex_t turn; /* held during a run: several decoders may share the pool */
+    worker *workers;       /* [threads - 1] */
+    pthread_mutex_t turn;  /* held during a run: several decoders may share the pool */
     adcgs_run_fn lent_run; /* runs tasks on the caller's threads; NULL: the pool's own threads */
     void *lent_user;
 };

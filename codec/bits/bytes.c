@@ -7,7 +7,7 @@
 void adcgs_reader_init(adcgs_reader *r, const void *data, size_t size)
 {
     static const uint8_t nothing; /* a valid address if there are no bytes */
-    *r = (adcgs_reader){ .data = size ? data : &nothing, .size = size };
+    *r = (adcgs_reader){.data = size ? data : &nothing, .size = size};
 }
 
 const uint8_t *adcgs_read_bytes(adcgs_reader *r, size_t n)
@@ -50,7 +50,7 @@ uint32_t adcgs_read_varint(adcgs_reader *r)
 
 void adcgs_buffer_init(adcgs_buffer *b)
 {
-    *b = (adcgs_buffer){ 0 };
+    *b = (adcgs_buffer){0};
 }
 
 void adcgs_buffer_clear(adcgs_buffer *b)

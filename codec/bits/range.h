@@ -49,7 +49,9 @@ typedef struct adcgs_adaptive {
     uint16_t count;
 } adcgs_adaptive;
 
+/* clang-format off */
 #define ADCGS_ADAPTIVE_INIT { 32768, 0 }
+/* clang-format on */
 /** p1 = 32768, count = 0 for n contexts. */
 void adcgs_adaptive_init(adcgs_adaptive *contexts, size_t n);
 /** The rule of clause "Adaptive decisions" (decision D4); shared by coder and decoder. */

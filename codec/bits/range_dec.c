@@ -44,7 +44,7 @@ void adcgs_range_dec_init(adcgs_range_dec *d, const uint8_t *data, size_t bytes)
     static const uint8_t nothing[1];
     if (!data)
         data = nothing;
-    *d = (adcgs_range_dec){ .range = UINT64_MAX, .next = data, .end = data + bytes };
+    *d = (adcgs_range_dec){.range = UINT64_MAX, .next = data, .end = data + bytes};
     const uint64_t high = next_word(d);
     d->value = high << 32 | next_word(d);
     d->broken = d->value == UINT64_MAX;

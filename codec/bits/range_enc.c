@@ -4,7 +4,7 @@
 
 static void put_word(adcgs_range_enc *e, uint32_t word)
 {
-    const uint8_t big[4] = { (uint8_t)(word >> 24), (uint8_t)(word >> 16), (uint8_t)(word >> 8), (uint8_t)word };
+    const uint8_t big[4] = {(uint8_t)(word >> 24), (uint8_t)(word >> 16), (uint8_t)(word >> 8), (uint8_t)word};
     adcgs_write_bytes(e->out, big, 4);
 }
 
@@ -30,7 +30,7 @@ static void advance(adcgs_range_enc *e, uint64_t below, uint64_t range)
 
 void adcgs_range_enc_init(adcgs_range_enc *e, adcgs_buffer *out)
 {
-    *e = (adcgs_range_enc){ .range = UINT64_MAX, .out = out, .start = out->size };
+    *e = (adcgs_range_enc){.range = UINT64_MAX, .out = out, .start = out->size};
 }
 
 void adcgs_range_enc_symbol(adcgs_range_enc *e, const uint32_t *cdf, int n, int symbol)

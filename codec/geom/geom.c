@@ -22,11 +22,11 @@
 #define LAYER 0x1ffu
 
 typedef struct cell {
-    uint64_t key;  /* Morton code of its lowest voxel */
-    uint32_t n;    /* points */
-    uint32_t left; /* of these in the left half, once split */
-    uint32_t split : 1; /* left is known */
-    uint32_t alone : 1; /* one point, and nothing in the 26 cells around: this also holds for all descendants */
+    uint64_t key;         /* Morton code of its lowest voxel */
+    uint32_t n;           /* points */
+    uint32_t left;        /* of these in the left half, once split */
+    uint32_t split : 1;   /* left is known */
+    uint32_t alone : 1;   /* one point, and nothing in the 26 cells around: this also holds for all descendants */
     uint32_t around : 27; /* mask of the 27 cells around and at it: those that exist or, before the search, may exist */
 } cell;
 
@@ -39,9 +39,9 @@ typedef struct walk {
     const uint64_t *codes; /* encoder: [n], ascending */
     cell *cells, *children;
     uint32_t *slots; /* numbers of cells */
-    int slot_bits; /* 0: bisect instead */
+    int slot_bits;   /* 0: bisect instead */
     size_t n_cells;
-    size_t finger[27];     /* end position of the last bisection for each neighbour, in this step */
+    size_t finger[27];         /* end position of the last bisection for each neighbour, in this step */
     uint64_t mask[3], unit[3]; /* bits of each axis; one cell in its direction */
 } walk;
 
@@ -189,7 +189,7 @@ static uint32_t count_left(const uint64_t *codes, uint32_t n, uint64_t bit)
 
 static cell half(const cell *at, int right, uint64_t key, uint32_t n)
 {
-    return (cell){ .key = key, .n = n, .alone = at->alone, .around = at->alone ? 0 : around_half(at->around, right) };
+    return (cell){.key = key, .n = n, .alone = at->alone, .around = at->alone ? 0 : around_half(at->around, right)};
 }
 
 static size_t split_cells(walk *w, int step)
@@ -200,7 +200,7 @@ static size_t split_cells(walk *w, int step)
     uint32_t first = 0;
     for (size_t i = 0; i < w->n_cells; i++) {
         cell *at = &w->cells[i];
-        adcgs_geom_around around = { 0 };
+        adcgs_geom_around around = {0};
         if (!at->alone)
             look_around(w, at, axis, &around);
         const uint32_t given = w->codes ? count_left(w->codes + first, at->n, bit) : 0;
@@ -227,7 +227,7 @@ static adcgs_status run(walk *w, adcgs_error *error)
         return adcgs_alloc_status(error);
     adcgs_geom_models_init(&w->models);
     w->coder.models = &w->models;
-    w->cells[0] = (cell){ .n = w->n, .around = 1u << ITSELF };
+    w->cells[0] = (cell){.n = w->n, .around = 1u << ITSELF};
     w->n_cells = 1;
     for (int step = 0; step < 3 * w->depth; step++) {
         for (int axis = 0; axis < 3; axis++) {

@@ -14,9 +14,9 @@
 
 /** Information from the cells around a cell when its count is split. */
 typedef struct adcgs_geom_around {
-    uint32_t before, behind;         /**< counts of the two cells next to it along the axis */
+    uint32_t before, behind;           /**< counts of the two cells next to it along the axis */
     uint64_t ring_before, ring_behind; /**< sums over the eight cells around each of those */
-    int lateral_left, lateral_right; /**< numbers of lateral neighbours already split that have points left, right; 0..4 */
+    int lateral_left, lateral_right;   /**< numbers of lateral neighbours already split that have points left, right; 0..4 */
 } adcgs_geom_around;
 
 /** All contexts of the coder. */

@@ -6,8 +6,8 @@
 
 #define DOMAIN_MAX 2047
 
-static const int16_t stretch_half[] = { LOGISTIC_STRETCH };
-static const uint16_t squash_half[] = { LOGISTIC_SQUASH };
+static const int16_t stretch_half[] = {LOGISTIC_STRETCH};
+static const uint16_t squash_half[] = {LOGISTIC_SQUASH};
 
 static int stretch(uint32_t p)
 {

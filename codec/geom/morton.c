@@ -28,7 +28,7 @@ static void radix_sort(item *a, item *b, size_t n)
 {
     for (int shift = 0; shift < 64; shift += 16) {
         for (int half = 0; half < 2; half++) {
-            size_t start[257] = { 0 };
+            size_t start[257] = {0};
             const item *from = half ? b : a;
             item *to = half ? a : b;
             const int at = shift + 8 * half;
@@ -54,7 +54,7 @@ int adcgs_morton_sort(uint32_t *voxels, size_t n, uint32_t *order, adcgs_error *
         return adcgs_alloc_status(error);
     }
     for (size_t i = 0; i < n; i++)
-        items[i] = (item){ .code = adcgs_morton(voxels + 3 * i), .index = (uint32_t)i };
+        items[i] = (item){.code = adcgs_morton(voxels + 3 * i), .index = (uint32_t)i};
     memcpy(copy, voxels, n * 3 * sizeof *copy);
     radix_sort(items, items + n, n);
     int duplicates = 0;

@@ -158,7 +158,7 @@ static void visit_model(visitor *v, const adcgs_model *a, const adcgs_model *b)
 
 void adcgs_model_digest(const adcgs_model *model, uint8_t digest[16])
 {
-    visitor v = { .item = digest_item };
+    visitor v = {.item = digest_item};
     adcgs_md5_init(&v.md5);
     visit_model(&v, model, model);
     adcgs_md5_final(&v.md5, digest);
@@ -166,7 +166,7 @@ void adcgs_model_digest(const adcgs_model *model, uint8_t digest[16])
 
 int adcgs_model_equal(const adcgs_model *a, const adcgs_model *b, adcgs_error *error)
 {
-    visitor v = { .item = compare_item };
+    visitor v = {.item = compare_item};
     visit_model(&v, a, b);
     if (!v.difference)
         return 1;
@@ -176,14 +176,14 @@ int adcgs_model_equal(const adcgs_model *a, const adcgs_model *b, adcgs_error *e
 
 int adcgs_params_equal(const adcgs_params *a, const adcgs_params *b)
 {
-    visitor v = { .item = compare_item };
+    visitor v = {.item = compare_item};
     visit_params(&v, a, b);
     return v.difference == NULL;
 }
 
 int adcgs_net_equal(const adcgs_net *a, const adcgs_net *b)
 {
-    visitor v = { .item = compare_item };
+    visitor v = {.item = compare_item};
     visit_net(&v, a, b);
     return v.difference == NULL;
 }

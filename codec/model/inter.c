@@ -93,7 +93,7 @@ static void code_anchor(const coder *c, contexts *x, adcgs_inter *kept, const ad
 
 static void code_all(const coder *c, adcgs_inter *kept, const adcgs_model *before)
 {
-    contexts x = { .dropped = { 0, 0 } };
+    contexts x = {.dropped = {0, 0}};
     adcgs_adaptive_init(x.drop[0], 6);
     adcgs_adaptive_init(x.refine[0], 6);
     adcgs_adaptive_init(x.change, ADCGS_INTER_GROUPS);
@@ -152,7 +152,7 @@ uint64_t adcgs_inter_values(const adcgs_model *before)
 adcgs_status adcgs_inter_decode(adcgs_inter *kept, const adcgs_model *before, adcgs_range_dec *range, adcgs_memory *memory,
                                 adcgs_error *error)
 {
-    const coder c = { .dec = range };
+    const coder c = {.dec = range};
     ADCGS_TRY(adcgs_inter_alloc(kept, before, memory, error));
     code_all(&c, kept, before);
     return adcgs_range_dec_finish(range, error);
@@ -161,7 +161,7 @@ adcgs_status adcgs_inter_decode(adcgs_inter *kept, const adcgs_model *before, ad
 adcgs_status adcgs_inter_encode(const adcgs_inter *kept, const adcgs_model *before, adcgs_buffer *out, adcgs_error *error)
 {
     adcgs_range_enc range;
-    const coder c = { .enc = &range };
+    const coder c = {.enc = &range};
     adcgs_inter same = *kept; /* code_all() stores the same values again */
     adcgs_range_enc_init(&range, out);
     code_all(&c, &same, before);

@@ -99,7 +99,7 @@ static int is_kept(const adcgs_inter *kept, const adcgs_model *before, uint32_t 
 
 adcgs_status adcgs_inter_renew(adcgs_model *now, const adcgs_model *before, adcgs_error *error)
 {
-    adcgs_inter kept = { .n = 0 };
+    adcgs_inter kept = {.n = 0};
     const adcgs_status status = adcgs_inter_find(&kept, before, now, error);
     uint32_t i = 0;
     for (uint32_t j = 0; status == ADCGS_OK && j < now->n; j++) {

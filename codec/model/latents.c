@@ -84,7 +84,7 @@ static void visit_group(const walker *w, int group, int k, int first, int count,
 {
     int16_t mu[ADCGS_NV_MAX];
     uint8_t si[ADCGS_NV_MAX];
-    adcgs_latent_site site = { .k = k, .group = group, .first = first, .count = count, .mu = mu, .si = si };
+    adcgs_latent_site site = {.k = k, .group = group, .first = first, .count = count, .mu = mu, .si = si};
     for (int j = 0; j < w->n; j++) {
         site.anchor = w->begin + (uint32_t)j;
         site.yq = rows + (size_t)j * stride;
@@ -164,7 +164,7 @@ size_t adcgs_latents_room(const adcgs_latents *latents)
 void adcgs_latents_walk_in(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                            adcgs_latent_visit visit, void *user, void *room)
 {
-    walker w = { latents, model, visit, user, 0, 0, NULL, NULL, NULL, NULL };
+    walker w = {latents, model, visit, user, 0, 0, NULL, NULL, NULL, NULL};
     w.x = room;
     w.mu = w.x + INPUTS_MAX;
     w.si = (uint8_t(*)[ADCGS_LANES])(w.mu + ADCGS_NV_MAX);
@@ -217,7 +217,7 @@ adcgs_status adcgs_latents_flags(adcgs_model *model, uint32_t begin, uint32_t en
                                  adcgs_error *error)
 {
     adcgs_adaptive static_context[2], mask_context[4];
-    body_coder bodies = { .last = 0 };
+    body_coder bodies = {.last = 0};
     const int n_k = model->params.k, moves = model->params.time_rows > 0;
     int previous_static = 0;
     uint32_t previous_mask = (1U << n_k) - 1;

@@ -28,14 +28,14 @@ static void decode_site(void *user, const adcgs_latent_site *site)
 adcgs_status adcgs_latents_decode_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_range_dec *range,
                                         adcgs_error *error)
 {
-    decoder d = { range, model->shape };
+    decoder d = {range, model->shape};
     return adcgs_latents_flags(model, begin, end, decode_flag, &d, error);
 }
 
 adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                   adcgs_range_dec *range, void *room, adcgs_error *error)
 {
-    decoder d = { range, model->shape };
+    decoder d = {range, model->shape};
     if (layer == 0)
         ADCGS_TRY(adcgs_latents_decode_flags(model, begin, end, range, error));
     adcgs_latents_walk_in(latents, model, layer, begin, end, decode_site, &d, room);

@@ -135,11 +135,16 @@ static void copy_arrays(adcgs_model *dst, const adcgs_model *src)
         const void *from;
         size_t bytes;
     } arrays[] = {
-        { dst->pos, src->pos, 3 * sizeof *src->pos },          { dst->is_static, src->is_static, sizeof *src->is_static },
-        { dst->body, src->body, sizeof *src->body },           { dst->mask, src->mask, sizeof *src->mask },
-        { dst->tier, src->tier, sizeof *src->tier },           { dst->eta, src->eta, p->n_eta * value },
-        { dst->fv, src->fv, p->n_fv * value },                 { dst->sigma, src->sigma, (size_t)adcgs_sigma_rows(p) * value },
-        { dst->colour, src->colour, ADCGS_COLOUR_N * value },  { dst->fg, src->fg, (size_t)p->k * p->n_fg * value },
+        {dst->pos, src->pos, 3 * sizeof *src->pos},
+        {dst->is_static, src->is_static, sizeof *src->is_static},
+        {dst->body, src->body, sizeof *src->body},
+        {dst->mask, src->mask, sizeof *src->mask},
+        {dst->tier, src->tier, sizeof *src->tier},
+        {dst->eta, src->eta, p->n_eta * value},
+        {dst->fv, src->fv, p->n_fv * value},
+        {dst->sigma, src->sigma, (size_t)adcgs_sigma_rows(p) * value},
+        {dst->colour, src->colour, ADCGS_COLOUR_N * value},
+        {dst->fg, src->fg, (size_t)p->k * p->n_fg * value},
     };
     for (size_t i = 0; n && i < ADCGS_COUNTOF(arrays); i++)
         memcpy(arrays[i].to, arrays[i].from, n * arrays[i].bytes);

@@ -43,26 +43,26 @@ typedef enum adcgs_group {
 
 /** Sizes and switches, the same for all segments of a stream. */
 typedef struct adcgs_params {
-    uint8_t k;            /**< primitives per anchor, 1..16 */
-    uint8_t n_fv;         /**< N_v: channels of f_v, 1..64 */
-    uint8_t n_fg;         /**< N_g: channels of f_g per primitive, 0..32, a multiple of chunks */
-    uint8_t chunks;       /**< M: 1..4 */
-    uint8_t n_eta;        /**< channels of the hyper-latent, 0..8; 0: f_v has a factorised prior */
-    uint8_t octaves;      /**< octaves of the position code f_p, 0..10: f_p has 6*octaves values */
-    uint8_t fine_uses_fv; /**< F_varpi's static inputs are [f_p, f_v] instead of f_p */
+    uint8_t k;               /**< primitives per anchor, 1..16 */
+    uint8_t n_fv;            /**< N_v: channels of f_v, 1..64 */
+    uint8_t n_fg;            /**< N_g: channels of f_g per primitive, 0..32, a multiple of chunks */
+    uint8_t chunks;          /**< M: 1..4 */
+    uint8_t n_eta;           /**< channels of the hyper-latent, 0..8; 0: f_v has a factorised prior */
+    uint8_t octaves;         /**< octaves of the position code f_p, 0..10: f_p has 6*octaves values */
+    uint8_t fine_uses_fv;    /**< F_varpi's static inputs are [f_p, f_v] instead of f_p */
     uint8_t coarse_rotation; /**< F_omega also predicts a rotation of the anchor */
     uint8_t adaptive_steps;  /**< E_q adapts all steps except that of f_v to the anchor */
     uint8_t spans;           /**< moving anchors have a lifetime and a velocity, channels 6.. of Sigma_v */
     uint8_t bodies;          /**< rigid bodies, 0..15, whose poses are the last columns of Z; 0 without a time table */
     uint8_t smooth_time;     /**< the time code is a spline of the rows of Z, not linear between rows */
-    uint16_t time_rows;   /**< rows of Z; 0: the scene is static, no deformation networks */
-    uint16_t time_width;  /**< columns of Z that are f_t; adcgs_pose_columns() more follow */
+    uint16_t time_rows;      /**< rows of Z; 0: the scene is static, no deformation networks */
+    uint16_t time_width;     /**< columns of Z that are f_t; adcgs_pose_columns() more follow */
 } adcgs_params;
 
 typedef struct adcgs_model {
     adcgs_params params;
     double time_start, time_end; /**< seconds; end >= start */
-    double reach;    /**< seconds after the end that the model still covers, for the crossfade into the next segment; 0: none */
+    double reach; /**< seconds after the end that the model still covers, for the crossfade into the next segment; 0: none */
 
     uint32_t n;      /**< anchors, >= 1 */
     uint8_t depth;   /**< 0..21 */
@@ -84,8 +84,8 @@ typedef struct adcgs_model {
 
     /* value = (float)yq * (d * factor), d = step/64, normal binary32 in [2^-40, 2^10]; factor: splat/steps.h */
     float d_fv[ADCGS_NV_MAX], d_sigma[ADCGS_SIGMA_MAX], d_colour[ADCGS_COLOUR_N], d_fg[ADCGS_NG_MAX];
-    uint8_t shape[ADCGS_GROUPS];          /**< 0..3: 0 Gaussian, 1: beta 1.5, 2: beta 1.25, 3: beta 1 */
-    int16_t eta_mu[ADCGS_ETA_MAX];        /**< prior of eta, 1/64 step */
+    uint8_t shape[ADCGS_GROUPS];   /**< 0..3: 0 Gaussian, 1: beta 1.5, 2: beta 1.25, 3: beta 1 */
+    int16_t eta_mu[ADCGS_ETA_MAX]; /**< prior of eta, 1/64 step */
     uint8_t eta_si[ADCGS_ETA_MAX];
 
     uint8_t finest; /**< tiers after the first, 0..ADCGS_TIERS_MAX - 1; in a model that is not predicted, each has an anchor */
@@ -93,9 +93,9 @@ typedef struct adcgs_model {
     uint8_t growth[ADCGS_TIERS_MAX - 1];
 
     adcgs_net net[ADCGS_ROLES];
-    uint8_t absent; /**< number of absent tiers, the finest ones; not part of equality or digest of a complete model */
+    uint8_t absent;    /**< number of absent tiers, the finest ones; not part of equality or digest of a complete model */
     uint8_t predicted; /**< coded relative to the segment before; not part of equality or digest */
-    uint8_t layers; /**< layers decoded for this model, 1..5; not part of equality or digest of a complete model */
+    uint8_t layers;    /**< layers decoded for this model, 1..5; not part of equality or digest of a complete model */
 } adcgs_model;
 
 /** Allocate the per-anchor arrays for n anchors (n, params set by the caller first). */

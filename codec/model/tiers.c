@@ -71,8 +71,7 @@ adcgs_status adcgs_tiers_check(const adcgs_model *coarser, const adcgs_model *ad
         while (j < added->n && adcgs_anchor_place(added, j) < adcgs_anchor_place(coarser, i))
             j++;
         if (j < added->n && adcgs_anchor_place(added, j) == adcgs_anchor_place(coarser, i))
-            return adcgs_fail(error, ADCGS_ERR_DATA, "GEOM: anchor %u has the position of another one (earlier tier or kept)",
-                              j);
+            return adcgs_fail(error, ADCGS_ERR_DATA, "GEOM: anchor %u has the position of another one (earlier tier or kept)", j);
     }
     return ADCGS_OK;
 }

@@ -12,8 +12,8 @@
 
 const char *adcgs_role_name(int role)
 {
-    static const char *const names[ADCGS_ROLES] = { "E_fv",    "E_Sigma", "E_C", "E_fg0",   "E_fg1",   "E_fg2",
-                                                    "E_fg3",   "E_q",     "F_theta", "F_omega", "F_varpi", "Z" };
+    static const char *const names[ADCGS_ROLES] = {"E_fv",  "E_Sigma", "E_C",     "E_fg0",   "E_fg1",   "E_fg2",
+                                                   "E_fg3", "E_q",     "F_theta", "F_omega", "F_varpi", "Z"};
     return role >= 0 && role < ADCGS_ROLES ? names[role] : "unknown";
 }
 
@@ -219,7 +219,7 @@ static adcgs_status check_bodies(const adcgs_model *m, adcgs_error *error)
 /** Check that the tiers exist and that, in a model that is not predicted, each tier has anchors. */
 static adcgs_status check_tiers(const adcgs_model *m, adcgs_error *error)
 {
-    uint32_t brings[ADCGS_TIERS_MAX] = { 0 };
+    uint32_t brings[ADCGS_TIERS_MAX] = {0};
     ADCGS_TRY(check_range("finest", m->finest, 0, ADCGS_TIERS_MAX - 1, error));
     ADCGS_TRY(check_range("absent", m->absent, 0, m->finest, error));
     for (int t = 0; t < m->finest; t++)

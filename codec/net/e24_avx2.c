@@ -21,8 +21,7 @@ static inline __attribute__((always_inline)) void dense_tile(int32_t *acc, const
             memcpy(&two, w + 2 * ((size_t)j * (size_t)pairs + (size_t)p), sizeof two);
             const __m256i weights = _mm256_set1_epi32(two);
             for (int q = 0; q < 4; q++)
-                sum[j][q] = _mm256_add_epi32(sum[j][q],
-                                             _mm256_madd_epi16(weights, _mm256_load_si256((const void *)(x + 8 * q))));
+                sum[j][q] = _mm256_add_epi32(sum[j][q], _mm256_madd_epi16(weights, _mm256_load_si256((const void *)(x + 8 * q))));
         }
     }
     for (int j = 0; j < rows; j++)

@@ -40,12 +40,24 @@ static void e24_dense(int32_t *acc, const int16_t *w, const int32_t *b, const ui
         int32_t *to = acc + j * ADCGS_LANES;
         rows = (n - j + tiles - 1) / tiles;
         switch (rows) {
-        case 6: dense_tile(to, weights, b + j, x, pairs, 6); break;
-        case 5: dense_tile(to, weights, b + j, x, pairs, 5); break;
-        case 4: dense_tile(to, weights, b + j, x, pairs, 4); break;
-        case 3: dense_tile(to, weights, b + j, x, pairs, 3); break;
-        case 2: dense_tile(to, weights, b + j, x, pairs, 2); break;
-        default: dense_tile(to, weights, b + j, x, pairs, 1); break;
+        case 6:
+            dense_tile(to, weights, b + j, x, pairs, 6);
+            break;
+        case 5:
+            dense_tile(to, weights, b + j, x, pairs, 5);
+            break;
+        case 4:
+            dense_tile(to, weights, b + j, x, pairs, 4);
+            break;
+        case 3:
+            dense_tile(to, weights, b + j, x, pairs, 3);
+            break;
+        case 2:
+            dense_tile(to, weights, b + j, x, pairs, 2);
+            break;
+        default:
+            dense_tile(to, weights, b + j, x, pairs, 1);
+            break;
         }
     }
 }

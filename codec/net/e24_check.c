@@ -16,8 +16,8 @@
 
 static void fill(adcgs_layer *layer, int32_t *numbers, uint32_t rows, uint32_t cols, uint32_t *state)
 {
-    layer->w = (adcgs_tensor){ .rows = rows, .cols = cols, .m = numbers };
-    layer->b = (adcgs_tensor){ .rows = rows, .cols = 1, .m = numbers + rows * cols };
+    layer->w = (adcgs_tensor){.rows = rows, .cols = cols, .m = numbers};
+    layer->b = (adcgs_tensor){.rows = rows, .cols = 1, .m = numbers + rows * cols};
     for (uint32_t i = 0; i < rows * cols; i++)
         layer->w.m[i] = (int32_t)adcgs_strict_draw(state, 255) - 127;
     for (uint32_t i = 0; i < rows; i++)
@@ -54,7 +54,7 @@ adcgs_status adcgs_e24_check(adcgs_error *error)
     int32_t numbers[HIDDEN * (INPUTS + 1) + HIDDEN * (HIDDEN + 1) + 2 * CHANNELS * (HIDDEN + 1)];
     int16_t x[INPUTS * ADCGS_LANES];
     uint32_t state = 1;
-    adcgs_net net = { .present = 1, .n_layers = 3, .in_shift = 3, .sigma_shift = 12, .sigma_offset = 32 };
+    adcgs_net net = {.present = 1, .n_layers = 3, .in_shift = 3, .sigma_shift = 12, .sigma_offset = 32};
     fill(&net.layer[0], numbers, HIDDEN, INPUTS, &state);
     fill(&net.layer[1], numbers + HIDDEN * (INPUTS + 1), HIDDEN, HIDDEN, &state);
     fill(&net.layer[2], numbers + HIDDEN * (INPUTS + HIDDEN + 2), 2 * CHANNELS, HIDDEN, &state);

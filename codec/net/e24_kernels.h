@@ -112,8 +112,9 @@ static void e24_output(const adcgs_e24 *net, const int32_t *acc, int first, int 
         }
         for (int s = 0; s < ADCGS_LANES; s++) {
             const int32_t v = e24_shr(acc[s], si_shift) + offset;
-            si[(row - channels) * ADCGS_LANES + s] =
-                (uint8_t)(v < 0 ? 0 : v > ADCGS_SIGMA_LEVELS - 1 ? ADCGS_SIGMA_LEVELS - 1 : v);
+            si[(row - channels) * ADCGS_LANES + s] = (uint8_t)(v < 0                        ? 0
+                                                               : v > ADCGS_SIGMA_LEVELS - 1 ? ADCGS_SIGMA_LEVELS - 1
+                                                                                            : v);
         }
     }
 }

@@ -8,7 +8,7 @@ void adcgs_net_clear(adcgs_net *net)
         adcgs_free(NULL, net->layer[i].w.m);
         adcgs_free(NULL, net->layer[i].b.m);
     }
-    *net = (adcgs_net){ 0 };
+    *net = (adcgs_net){0};
 }
 
 uint32_t adcgs_net_weights(const adcgs_net *net)

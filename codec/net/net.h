@@ -29,24 +29,24 @@ typedef struct adcgs_tensor {
 
 /** Role of a network. The values are those of the syntax element net_role. */
 typedef enum adcgs_role {
-    ADCGS_ROLE_ENTROPY_FV = 0,    /**< E_fv: eta -> mean and scale of f_v */
-    ADCGS_ROLE_ENTROPY_SIGMA = 1, /**< E_Sigma: f_v -> mean and scale of Sigma_v */
-    ADCGS_ROLE_ENTROPY_COLOUR = 2,/**< E_C: f_v -> mean and scale of C_v */
-    ADCGS_ROLE_ENTROPY_FG = 3,    /**< E_fg: 3 + chunk, chunk 0..3: f_v and earlier chunks of f_g,k -> the same of this chunk */
-    ADCGS_ROLE_ENTROPY_STEPS = 7, /**< E_q: f_v -> step indices of Sigma_v, C_v and the chunks of f_g */
-    ADCGS_ROLE_PREDICTION = 8,    /**< F_theta (binary32) */
-    ADCGS_ROLE_COARSE = 9,        /**< F_omega (binary32) */
-    ADCGS_ROLE_FINE = 10,         /**< F_varpi (binary32) */
-    ADCGS_ROLE_TIME = 11,         /**< Z, the time table: one tensor [time_rows][time_width + poses] in layer 0's w, no bias */
+    ADCGS_ROLE_ENTROPY_FV = 0,     /**< E_fv: eta -> mean and scale of f_v */
+    ADCGS_ROLE_ENTROPY_SIGMA = 1,  /**< E_Sigma: f_v -> mean and scale of Sigma_v */
+    ADCGS_ROLE_ENTROPY_COLOUR = 2, /**< E_C: f_v -> mean and scale of C_v */
+    ADCGS_ROLE_ENTROPY_FG = 3,     /**< E_fg: 3 + chunk, chunk 0..3: f_v and earlier chunks of f_g,k -> the same of this chunk */
+    ADCGS_ROLE_ENTROPY_STEPS = 7,  /**< E_q: f_v -> step indices of Sigma_v, C_v and the chunks of f_g */
+    ADCGS_ROLE_PREDICTION = 8,     /**< F_theta (binary32) */
+    ADCGS_ROLE_COARSE = 9,         /**< F_omega (binary32) */
+    ADCGS_ROLE_FINE = 10,          /**< F_varpi (binary32) */
+    ADCGS_ROLE_TIME = 11,          /**< Z, the time table: one tensor [time_rows][time_width + poses] in layer 0's w, no bias */
     ADCGS_ROLES = 12
 } adcgs_role;
 
 /** One dense layer, optionally residual. Float networks ignore the shift. */
 typedef struct adcgs_layer {
-    adcgs_tensor w;  /**< [n_out][n_in] */
-    adcgs_tensor b;  /**< [n_out][1] (0 rows for the time table) */
-    uint8_t residual;/**< h' = clip(h + lrelu(shr(acc, shift)), A), n_in == n_out; never on the last layer */
-    uint8_t shift;   /**< s, E24: hidden layers, and s_mu on the last */
+    adcgs_tensor w;   /**< [n_out][n_in] */
+    adcgs_tensor b;   /**< [n_out][1] (0 rows for the time table) */
+    uint8_t residual; /**< h' = clip(h + lrelu(shr(acc, shift)), A), n_in == n_out; never on the last layer */
+    uint8_t shift;    /**< s, E24: hidden layers, and s_mu on the last */
 } adcgs_layer;
 
 /**

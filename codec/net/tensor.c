@@ -13,7 +13,7 @@
 typedef struct coder {
     adcgs_range_enc *e; /* one of e and d is set */
     adcgs_range_dec *d;
-    int bad;            /* a value does not fit its type */
+    int bad; /* a value does not fit its type */
 } coder;
 
 typedef struct integer_models {
@@ -184,8 +184,8 @@ static int rows_are_smooth(const adcgs_tensor *t)
 
 void adcgs_tensor_encode(adcgs_range_enc *e, const adcgs_tensor *t)
 {
-    coder c = { .e = e };
-    uint8_t classes[ADCGS_NET_INPUTS_MAX] = { 0 };
+    coder c = {.e = e};
+    uint8_t classes[ADCGS_NET_INPUTS_MAX] = {0};
     if (t->mode == 1) {
         code_floats(&c, t);
         return;
@@ -198,8 +198,8 @@ void adcgs_tensor_encode(adcgs_range_enc *e, const adcgs_tensor *t)
 
 adcgs_status adcgs_tensor_decode(adcgs_range_dec *d, adcgs_tensor *t, adcgs_error *error)
 {
-    coder c = { .d = d };
-    uint8_t classes[ADCGS_NET_INPUTS_MAX] = { 0 };
+    coder c = {.d = d};
+    uint8_t classes[ADCGS_NET_INPUTS_MAX] = {0};
     if (t->mode > 1 || t->cols > ADCGS_NET_INPUTS_MAX)
         return adcgs_fail(error, ADCGS_ERR_DATA, "tensor of mode %d with %u columns; modes are 0 and 1, columns up to %d",
                           t->mode, t->cols, ADCGS_NET_INPUTS_MAX);

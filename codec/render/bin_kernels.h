@@ -141,8 +141,8 @@ static inline uint32_t emit(uint64_t *out, __m256i items, __m256i masks)
 
 static inline uint32_t bin_group(const bin_frame *f, const block_rows *rows, int tile_rows, int x, uint64_t item, uint64_t *out)
 {
-    const __m256i packed = _mm256_packus_epi32(row_bits(rows->begin.a, rows->end.a, 4 * x),
-                                               row_bits(rows->begin.b, rows->end.b, 4 * x));
+    const __m256i packed =
+        _mm256_packus_epi32(row_bits(rows->begin.a, rows->end.a, 4 * x), row_bits(rows->begin.b, rows->end.b, 4 * x));
     const __m256i base = _mm256_set1_epi64x((long long)item);
     alignas(32) long long words[4];
     uint32_t n = 0;

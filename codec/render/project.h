@@ -21,16 +21,16 @@
 #define ADCGS_LOG2E 0x1.715476p+0f
 
 typedef struct adcgs_projection {
-    float x, y, z;         /* camera coordinates */
-    float iz, tx, ty;      /* 1/z, x/z, y/z */
-    float lx, ly;          /* x/z and y/z, limited */
-    float jx, jy;          /* fx/z, fy/z */
-    float m[2][3];         /* Jacobian times view rotation */
-    float rot[3][3];       /* rotation of the Gaussian */
-    float mr[2][3];        /* m * rot */
-    float f[2][3];         /* m * rot * diag(scale): the covariance is f f^T */
-    float u, v;            /* centre in pixels */
-    float p, q, r, det;    /* screen covariance [p q; q r] and its determinant */
+    float x, y, z;      /* camera coordinates */
+    float iz, tx, ty;   /* 1/z, x/z, y/z */
+    float lx, ly;       /* x/z and y/z, limited */
+    float jx, jy;       /* fx/z, fy/z */
+    float m[2][3];      /* Jacobian times view rotation */
+    float rot[3][3];    /* rotation of the Gaussian */
+    float mr[2][3];     /* m * rot */
+    float f[2][3];      /* m * rot * diag(scale): the covariance is f f^T */
+    float u, v;         /* centre in pixels */
+    float p, q, r, det; /* screen covariance [p q; q r] and its determinant */
 } adcgs_projection;
 
 static inline void adcgs_quaternion_matrix(float rot[3][3], float w, float x, float y, float z)

@@ -93,9 +93,9 @@ void adcgs_raster_free(adcgs_raster **raster)
     adcgs_raster *r = *raster;
     if (!r)
         return;
-    room *const rooms[] = {&r->projected,  &r->outlines, &r->areas,   &r->keys,    &r->other,   &r->piece_counts,
-                           &r->splats,     &r->first,    &r->where,   &r->pieces,  &r->counts,  &r->emitted,
-                           &r->tile_start, &r->entries,  &r->place,   &r->transmittance};
+    room *const rooms[] = {&r->projected,  &r->outlines, &r->areas, &r->keys,         &r->other,  &r->piece_counts,
+                           &r->splats,     &r->first,    &r->where, &r->pieces,       &r->counts, &r->emitted,
+                           &r->tile_start, &r->entries,  &r->place, &r->transmittance};
     for (size_t i = 0; i < ADCGS_COUNTOF(rooms); i++)
         adcgs_free(r->memory, rooms[i]->data);
     adcgs_free(r->memory, r);

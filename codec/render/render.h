@@ -24,7 +24,7 @@ typedef struct adcgs_view {
     float translation[3]; /**< camera = rotation * scene + translation */
     float fx, fy, cx, cy;
     float near_plane;
-    float limit[4];       /**< bounds of X/Z (lo, hi) and Y/Z (lo, hi) inside the Jacobian */
+    float limit[4]; /**< bounds of X/Z (lo, hi) and Y/Z (lo, hi) inside the Jacobian */
 } adcgs_view;
 
 /** Validates the camera; world = origin + scale * scene. Computes in binary64, rounds once per field (spec "View"). */
@@ -33,13 +33,13 @@ adcgs_status adcgs_view_init(adcgs_view *view, const adcgs_camera *camera, const
 
 /** One projected splat, 64 bytes. alpha = exp2(a dx^2 + b dx dy + c dy^2 + log2_opacity), dx = pixel centre - x. */
 typedef struct adcgs_splat2d {
-    float x, y;          /**< centre, pixels */
-    float a, b, c;       /**< conic times -log2(e)/2, b times -log2(e) */
+    float x, y;    /**< centre, pixels */
+    float a, b, c; /**< conic times -log2(e)/2, b times -log2(e) */
     float log2_opacity;
     float rgb[3];
-    float depth;         /**< camera z, > near plane */
-    uint16_t tile[4];    /**< x0, y0, x1, y1: tiles [x0,x1) x [y0,y1) that may be touched */
-    uint32_t slot;       /**< index of the primitive */
+    float depth;      /**< camera z, > near plane */
+    uint16_t tile[4]; /**< x0, y0, x1, y1: tiles [x0,x1) x [y0,y1) that may be touched */
+    uint32_t slot;    /**< index of the primitive */
     float spare[3];
 } adcgs_splat2d;
 
@@ -73,15 +73,15 @@ adcgs_status adcgs_raster_depth(adcgs_raster *raster, const adcgs_primitives *pr
 /** Data kept by the last forward pass with keep. */
 typedef struct adcgs_kept {
     uint32_t n_splats;
-    const adcgs_splat2d *splats;     /**< [n_splats], by depth, then slot */
+    const adcgs_splat2d *splats; /**< [n_splats], by depth, then slot */
     int tiles_x, tiles_y;
     const uint32_t *tile_start;      /**< [tiles+1] into entries */
     const adcgs_tile_entry *entries; /**< depth order within a tile */
     const float *transmittance;      /**< final T, [tiles][16 blocks][16 pixels] */
     uint32_t n_slots;
-    const uint32_t *where;           /**< [n_slots] index into splats of a slot's splat, or 0xffffffff */
-    const uint32_t *first;           /**< [n_splats+1] first pair of a splat, counting (splat, tile) pairs splat by splat */
-    const uint32_t *place;           /**< [entries] number of that pair */
+    const uint32_t *where; /**< [n_slots] index into splats of a slot's splat, or 0xffffffff */
+    const uint32_t *first; /**< [n_splats+1] first pair of a splat, counting (splat, tile) pairs splat by splat */
+    const uint32_t *place; /**< [entries] number of that pair */
 } adcgs_kept;
 void adcgs_raster_kept(const adcgs_raster *raster, adcgs_kept *kept);
 

@@ -30,14 +30,14 @@ struct adcgs_splat {
     adcgs_splat_dsp dsp;
     adcgs_floatnet prediction, coarse, fine;
     adcgs_steps steps;
-    uint32_t groups, moving; /* groups of 64 anchors; groups in which an anchor moves */
-    int width;               /* widest layer of the networks */
-    float *out;              /* [ADCGS_ROWS][groups*k*64] */
-    uint32_t *moving_group;  /* [moving] */
-    adcgs_anchor_lanes *anchors; /* [moving] */
-    adcgs_slot_lanes *slots;     /* [moving][k] */
-    int32_t *present;            /* [moving][k][64] */
-    int32_t *moves;              /* [moving][64] */
+    uint32_t groups, moving;        /* groups of 64 anchors; groups in which an anchor moves */
+    int width;                      /* widest layer of the networks */
+    float *out;                     /* [ADCGS_ROWS][groups*k*64] */
+    uint32_t *moving_group;         /* [moving] */
+    adcgs_anchor_lanes *anchors;    /* [moving] */
+    adcgs_slot_lanes *slots;        /* [moving][k] */
+    int32_t *present;               /* [moving][k][64] */
+    int32_t *moves;                 /* [moving][64] */
     float *coarse_part, *fine_part; /* [moving][outputs of layer 0][64]: layer 0 over the static inputs */
     float *scratch;                 /* [threads][scratch_rows][64] */
     size_t scratch_rows;
@@ -368,9 +368,9 @@ static void time_part(float *to, const adcgs_floatnet *net, const float *time_co
 static const float *deform_outputs(const adcgs_splat *s, const adcgs_floatnet *net, const float *part, const float *time,
                                    float *z, float *other)
 {
-    static const _Alignas(64) float ones[ADCGS_LANES] = {
-        1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
-        1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    static const _Alignas(64) float ones[ADCGS_LANES] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
+                                                         1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
+                                                         1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     if (!net->n_layers)
         return NULL;
     /* Weight 1 times the time's part, fused with the anchors' part, is their plain sum. */

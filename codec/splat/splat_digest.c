@@ -6,9 +6,9 @@
 
 void adcgs_splat_digest(const adcgs_model *model, const adcgs_primitives *p, uint8_t digest[16])
 {
-    const float *const arrays[] = {p->mean[0],     p->mean[1],     p->mean[2],     p->scale[0],    p->scale[1],
-                                   p->scale[2],    p->rotation[0], p->rotation[1], p->rotation[2], p->rotation[3],
-                                   p->opacity,     p->colour[0],   p->colour[1],   p->colour[2]};
+    const float *const arrays[] = {p->mean[0],  p->mean[1],     p->mean[2],     p->scale[0],    p->scale[1],
+                                   p->scale[2], p->rotation[0], p->rotation[1], p->rotation[2], p->rotation[3],
+                                   p->opacity,  p->colour[0],   p->colour[1],   p->colour[2]};
     adcgs_md5 md5;
     adcgs_md5_init(&md5);
     for (uint32_t i = 0; i < model->n; i++)

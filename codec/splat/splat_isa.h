@@ -8,21 +8,21 @@
 /** Rows of 64 lanes for an anchor group, in addition to the networks' rows. */
 typedef struct adcgs_anchor_lanes {
     _Alignas(64) float position[3][ADCGS_LANES];
-    float code[3][ADCGS_LANES];       /**< p: position in the cube, in (0,1) */
-    float extent[3][ADCGS_LANES];     /**< exp of Sigma_v 0..2 */
-    float scale[3][ADCGS_LANES];      /**< exp of Sigma_v 3..5 */
-    float colour[3][ADCGS_LANES];     /**< C_v */
+    float code[3][ADCGS_LANES];                                             /**< p: position in the cube, in (0,1) */
+    float extent[3][ADCGS_LANES];                                           /**< exp of Sigma_v 0..2 */
+    float scale[3][ADCGS_LANES];                                            /**< exp of Sigma_v 3..5 */
+    float colour[3][ADCGS_LANES];                                           /**< C_v */
     float velocity[3][ADCGS_LANES], middle[ADCGS_LANES], pace[ADCGS_LANES]; /**< lifetimes; with spans */
 } adcgs_anchor_lanes;
 
 /** Motion of a group's anchors at one time. */
 typedef struct adcgs_anchor_motion {
     _Alignas(64) float position[3][ADCGS_LANES]; /**< X_v, rotated, + dX + the lifetime's motion, then moved by the body */
-    float scale[3][ADCGS_LANES];      /**< exp of dS */
-    float colour[3][ADCGS_LANES];     /**< dC_v */
-    float q[4][ADCGS_LANES];          /**< qr */
-    float matrix[9][ADCGS_LANES];     /**< its rotation matrix, row-major */
-    float presence[ADCGS_LANES];      /**< with spans: the weight of the lifetime, 0..1 */
+    float scale[3][ADCGS_LANES];                 /**< exp of dS */
+    float colour[3][ADCGS_LANES];                /**< dC_v */
+    float q[4][ADCGS_LANES];                     /**< qr */
+    float matrix[9][ADCGS_LANES];                /**< its rotation matrix, row-major */
+    float presence[ADCGS_LANES];                 /**< with spans: the weight of the lifetime, 0..1 */
 } adcgs_anchor_motion;
 
 /** Poses of the bodies of a group's anchors. Anchors without a body have the pose of any body. */

@@ -20,7 +20,8 @@ static void anchor(adcgs_anchor_lanes *a, const float *sigma, int spans)
     if (!spans)
         return;
     for (int c = 0; c < 3; c++)
-        LANES a->velocity[c][l] = sigma[(ADCGS_SPAN_VELOCITY + c) * ADCGS_LANES + l] * 0.125f;
+        LANES
+            a->velocity[c][l] = sigma[(ADCGS_SPAN_VELOCITY + c) * ADCGS_LANES + l] * 0.125f;
     LANES {
         a->middle[l] = fmaf(sigma[ADCGS_SPAN_MIDDLE * ADCGS_LANES + l], 0.125f, 0.5f);
         a->pace[l] = adcgs_exp(adcgs_clampf(sigma[ADCGS_SPAN_PACE * ADCGS_LANES + l], -8.0f, 8.0f));
@@ -82,7 +83,8 @@ static void place(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adc
     for (int c = 0; c < 4; c++)
         memcpy(to->rotation[c], s->q[c], sizeof s->q[c]);
     float *restrict opacity = to->opacity;
-    LANES opacity[l] = final_opacity(s->logit[l], present[l]);
+    LANES
+        opacity[l] = final_opacity(s->logit[l], present[l]);
 }
 
 /* The rotation 1 + r0 i + r1 j + r2 k, normalised, and its matrix. */
@@ -117,7 +119,8 @@ static void turn_vector(float *restrict out, const float *restrict in, const flo
     const float *x = in, *y = in + ADCGS_LANES, *z = in + 2 * ADCGS_LANES;
     for (int c = 0; c < 3; c++) {
         const float *r0 = matrix[3 * c], *r1 = matrix[3 * c + 1], *r2 = matrix[3 * c + 2];
-        LANES out[c * ADCGS_LANES + l] = fmaf(r2[l], z[l], fmaf(r1[l], y[l], r0[l] * x[l]));
+        LANES
+            out[c * ADCGS_LANES + l] = fmaf(r2[l], z[l], fmaf(r1[l], y[l], r0[l] * x[l]));
     }
 }
 
@@ -138,7 +141,8 @@ static void turn_quaternion(float *restrict out, const float r[4][ADCGS_LANES], 
 static void keep_bodiless(float *restrict changed, const float *restrict before, const int32_t *restrict has, int rows)
 {
     for (int c = 0; c < rows * ADCGS_LANES; c += ADCGS_LANES)
-        LANES changed[c + l] = has[l] ? changed[c + l] : before[c + l];
+        LANES
+            changed[c + l] = has[l] ? changed[c + l] : before[c + l];
 }
 
 /* An anchor's motion since the middle of its lifetime, and the weight of its lifetime. */
@@ -151,7 +155,8 @@ static void live(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, float t)
         m->presence[l] = adcgs_exp(-(square * square));
     }
     for (int c = 0; c < 3; c++)
-        LANES m->position[c][l] = fmaf(a->velocity[c][l], u[l], m->position[c][l]);
+        LANES
+            m->position[c][l] = fmaf(a->velocity[c][l], u[l], m->position[c][l]);
 }
 
 /* Anchors move with their bodies. */
@@ -159,10 +164,12 @@ static void carry(adcgs_anchor_motion *m, const adcgs_body_lanes *b)
 {
     float from[3][ADCGS_LANES], to[3][ADCGS_LANES];
     for (int c = 0; c < 3; c++)
-        LANES from[c][l] = m->position[c][l] - b->centre[c][l];
+        LANES
+            from[c][l] = m->position[c][l] - b->centre[c][l];
     turn_vector(to[0], from[0], b->matrix);
     for (int c = 0; c < 3; c++)
-        LANES to[c][l] += b->place[c][l];
+        LANES
+            to[c][l] += b->place[c][l];
     keep_bodiless(to[0], m->position[0], b->has, 3);
     memcpy(m->position, to, sizeof to);
 }
@@ -181,7 +188,8 @@ static void motion(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, const fl
         turn_vector(m->position[0], a->position[0], (const float(*)[ADCGS_LANES])m->matrix);
     }
     for (int c = 0; movers->coarse && c < 3; c++)
-        LANES m->position[c][l] += out[c * ADCGS_LANES + l];
+        LANES
+            m->position[c][l] += out[c * ADCGS_LANES + l];
     if (movers->spans)
         live(m, a, t);
     if (bodies)
@@ -205,7 +213,8 @@ static void deform_rotation(const adcgs_slot_out *to, const adcgs_slot_lanes *s,
     }
     for (int c = 0; c < 4; c++) {
         float *restrict out = to->rotation[c];
-        LANES out[l] = moves[l] ? q[c * ADCGS_LANES + l] : out[l];
+        LANES
+            out[l] = moves[l] ? q[c * ADCGS_LANES + l] : out[l];
     }
 }
 
@@ -278,6 +287,7 @@ static void position_code(float *out, const float *x, int octaves)
             const float factor = (float)(1 << o);
             float *restrict sine = out + ((size_t)a * (size_t)octaves + (size_t)o) * (2 * ADCGS_LANES);
             float *restrict cosine = sine + ADCGS_LANES;
-            LANES adcgs_sincospi(x[a * ADCGS_LANES + l] * factor, &sine[l], &cosine[l]);
+            LANES
+                adcgs_sincospi(x[a * ADCGS_LANES + l] * factor, &sine[l], &cosine[l]);
         }
 }

@@ -5,12 +5,11 @@
 float adcgs_step_factor(int q)
 {
     static const float factors[2 * ADCGS_STEP_INDEX_MAX + 1] = {
-        0x1.000000p-2f, 0x1.172b84p-2f, 0x1.306fe0p-2f, 0x1.4bfdaep-2f, 0x1.6a09e6p-2f, 0x1.8ace54p-2f,
-        0x1.ae89fap-2f, 0x1.d5818ep-2f, 0x1.000000p-1f, 0x1.172b84p-1f, 0x1.306fe0p-1f, 0x1.4bfdaep-1f,
-        0x1.6a09e6p-1f, 0x1.8ace54p-1f, 0x1.ae89fap-1f, 0x1.d5818ep-1f, 0x1.000000p+0f, 0x1.172b84p+0f,
-        0x1.306fe0p+0f, 0x1.4bfdaep+0f, 0x1.6a09e6p+0f, 0x1.8ace54p+0f, 0x1.ae89fap+0f, 0x1.d5818ep+0f,
-        0x1.000000p+1f, 0x1.172b84p+1f, 0x1.306fe0p+1f, 0x1.4bfdaep+1f, 0x1.6a09e6p+1f, 0x1.8ace54p+1f,
-        0x1.ae89fap+1f, 0x1.d5818ep+1f, 0x1.000000p+2f,
+        0x1.000000p-2f, 0x1.172b84p-2f, 0x1.306fe0p-2f, 0x1.4bfdaep-2f, 0x1.6a09e6p-2f, 0x1.8ace54p-2f, 0x1.ae89fap-2f,
+        0x1.d5818ep-2f, 0x1.000000p-1f, 0x1.172b84p-1f, 0x1.306fe0p-1f, 0x1.4bfdaep-1f, 0x1.6a09e6p-1f, 0x1.8ace54p-1f,
+        0x1.ae89fap-1f, 0x1.d5818ep-1f, 0x1.000000p+0f, 0x1.172b84p+0f, 0x1.306fe0p+0f, 0x1.4bfdaep+0f, 0x1.6a09e6p+0f,
+        0x1.8ace54p+0f, 0x1.ae89fap+0f, 0x1.d5818ep+0f, 0x1.000000p+1f, 0x1.172b84p+1f, 0x1.306fe0p+1f, 0x1.4bfdaep+1f,
+        0x1.6a09e6p+1f, 0x1.8ace54p+1f, 0x1.ae89fap+1f, 0x1.d5818ep+1f, 0x1.000000p+2f,
     };
     return factors[q + ADCGS_STEP_INDEX_MAX];
 }
@@ -18,7 +17,7 @@ float adcgs_step_factor(int q)
 adcgs_status adcgs_steps_init(adcgs_steps *steps, const adcgs_model *model, adcgs_cpu_level cpu, adcgs_memory *memory,
                               adcgs_error *error)
 {
-    *steps = (adcgs_steps){ .n = adcgs_params_steps(&model->params), .n_fv = model->params.n_fv };
+    *steps = (adcgs_steps){.n = adcgs_params_steps(&model->params), .n_fv = model->params.n_fv};
     return steps->n ? adcgs_e24_create(&steps->net, &model->net[ADCGS_ROLE_ENTROPY_STEPS], cpu, memory, error) : ADCGS_OK;
 }
 

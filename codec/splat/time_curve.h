@@ -23,9 +23,10 @@ static inline adcgs_time_place adcgs_time_place_of(float t, uint32_t rows)
     const float u = t * (float)(rows - 1);
     const uint32_t row = (uint32_t)u < rows - 2 ? (uint32_t)u : rows - 2;
     const float r = u - (float)row, s = 1 - r, sixth = 0x1.555556p-3f, two_thirds = 0x1.555556p-1f;
-    return (adcgs_time_place){ row, r,
-                               { s * s * s * sixth, fmaf(r * r, fmaf(0.5f, r, -1), two_thirds),
-                                 fmaf(s * s, fmaf(0.5f, s, -1), two_thirds), r * r * r * sixth } };
+    return (adcgs_time_place){row,
+                              r,
+                              {s * s * s * sixth, fmaf(r * r, fmaf(0.5f, r, -1), two_thirds),
+                               fmaf(s * s, fmaf(0.5f, s, -1), two_thirds), r * r * r * sixth}};
 }
 
 /** Extrapolate a row that does not exist, from the last row that does and the row before it. */

@@ -16,15 +16,33 @@
 const adcgs_level *adcgs_level_get(int level)
 {
     static const adcgs_level levels[ADCGS_LEVELS] = {
-        { .anchors = 4096, .segments = 16, .depth = 12, .weights = UINT32_C(1) << 19, .networks = 256,
-          .file_bytes = UINT64_C(4) << 20, .chunk_bytes = UINT64_C(2) << 20, .model_bytes = UINT64_C(32) << 20,
-          .work = UINT64_C(1) << 34 },
-        { .anchors = 65536, .segments = 4096, .depth = 16, .weights = UINT32_C(1) << 21, .networks = 4096,
-          .file_bytes = UINT64_C(256) << 20, .chunk_bytes = UINT64_C(32) << 20, .model_bytes = UINT64_C(256) << 20,
-          .work = UINT64_C(1) << 36 },
-        { .anchors = 1048576, .segments = 65535, .depth = 21, .weights = UINT32_C(1) << 24, .networks = 65536,
-          .file_bytes = UINT64_C(64) << 30, .chunk_bytes = UINT64_C(1) << 30, .model_bytes = UINT64_C(4) << 30,
-          .work = UINT64_C(1) << 40 },
+        {.anchors = 4096,
+         .segments = 16,
+         .depth = 12,
+         .weights = UINT32_C(1) << 19,
+         .networks = 256,
+         .file_bytes = UINT64_C(4) << 20,
+         .chunk_bytes = UINT64_C(2) << 20,
+         .model_bytes = UINT64_C(32) << 20,
+         .work = UINT64_C(1) << 34},
+        {.anchors = 65536,
+         .segments = 4096,
+         .depth = 16,
+         .weights = UINT32_C(1) << 21,
+         .networks = 4096,
+         .file_bytes = UINT64_C(256) << 20,
+         .chunk_bytes = UINT64_C(32) << 20,
+         .model_bytes = UINT64_C(256) << 20,
+         .work = UINT64_C(1) << 36},
+        {.anchors = 1048576,
+         .segments = 65535,
+         .depth = 21,
+         .weights = UINT32_C(1) << 24,
+         .networks = 65536,
+         .file_bytes = UINT64_C(64) << 30,
+         .chunk_bytes = UINT64_C(1) << 30,
+         .model_bytes = UINT64_C(4) << 30,
+         .work = UINT64_C(1) << 40},
     };
     return &levels[level - 1];
 }
@@ -150,8 +168,11 @@ static int type_is_text(const char *name)
 static adcgs_status parse_header(const adcgs_source *source, adcgs_chunk *chunk, const uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES],
                                  adcgs_error *error)
 {
-    adcgs_parse p = { .origin = chunk->origin, .chunk = "chunk", .trace = source->trace, .trace_user = source->trace_user,
-                      .error = error };
+    adcgs_parse p = {.origin = chunk->origin,
+                     .chunk = "chunk",
+                     .trace = source->trace,
+                     .trace_user = source->trace_user,
+                     .error = error};
     adcgs_reader_init(&p.r, bytes, ADCGS_CHUNK_HEADER_BYTES);
     if (adcgs_load_le32(bytes + ADCGS_CHUNK_HEADER_BYTES - 4) != adcgs_crc32c(0, bytes, ADCGS_CHUNK_HEADER_BYTES - 4))
         return adcgs_fail(error, ADCGS_ERR_DATA, "chunk header at byte %llu: checksum is wrong",
@@ -169,8 +190,8 @@ static adcgs_status parse_header(const adcgs_source *source, adcgs_chunk *chunk,
 adcgs_status adcgs_chunk_header(const uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES], uint64_t origin, adcgs_chunk *chunk,
                                 adcgs_error *error)
 {
-    const adcgs_source untraced = { .pos = origin };
-    *chunk = (adcgs_chunk){ .origin = origin };
+    const adcgs_source untraced = {.pos = origin};
+    *chunk = (adcgs_chunk){.origin = origin};
     return parse_header(&untraced, chunk, bytes, error);
 }
 
@@ -190,7 +211,7 @@ adcgs_status adcgs_chunk_read(adcgs_source *source, const adcgs_level *limits, a
 {
     uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES];
     size_t got;
-    *chunk = (adcgs_chunk){ .origin = source->pos };
+    *chunk = (adcgs_chunk){.origin = source->pos};
     ADCGS_TRY(adcgs_source_read(source, bytes, sizeof bytes, &got, error));
     chunk->ended = got < sizeof bytes;
     if (chunk->ended)
@@ -244,8 +265,8 @@ void adcgs_bytes_count(adcgs_bytes *bytes, uint32_t type, uint64_t payload)
         bytes->geometry += payload;
     else if (type == ADCGS_TYPE_cams)
         bytes->cameras += payload;
-    else if (type != ADCGS_TYPE_HEAD && type != ADCGS_TYPE_SEGM && type != ADCGS_TYPE_INDX && type != ADCGS_TYPE_ENDC
-             && type != ADCGS_TYPE_hash)
+    else if (type != ADCGS_TYPE_HEAD && type != ADCGS_TYPE_SEGM && type != ADCGS_TYPE_INDX && type != ADCGS_TYPE_ENDC &&
+             type != ADCGS_TYPE_hash)
         bytes->metadata += payload;
 }
 

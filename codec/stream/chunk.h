@@ -5,8 +5,9 @@
 
 #include "stream/syntax.h"
 
-#define ADCGS_SIGNATURE "\x8B"         \
-                        "ADC\r\n\x1A\n"
+#define ADCGS_SIGNATURE \
+    "\x8B"              \
+    "ADC\r\n\x1A\n"
 #define ADCGS_SIGNATURE_BYTES 8
 #define ADCGS_CHUNK_HEADER_BYTES 16 /**< with its CRC */
 #define ADCGS_CHUNK_BYTES 20        /**< header and CRC of the payload */
@@ -27,8 +28,8 @@
 #define ADCGS_TYPE_cams ADCGS_TYPE('c', 'a', 'm', 's')
 #define ADCGS_TYPE_meta ADCGS_TYPE('m', 'e', 't', 'a')
 
-#define ADCGS_CHUNK_KEY 1  /**< flag of SEGM: the segment depends on no earlier one */
-#define ADCGS_CHUNK_LAST 2 /**< flag: last chunk of its segment */
+#define ADCGS_CHUNK_KEY 1                          /**< flag of SEGM: the segment depends on no earlier one */
+#define ADCGS_CHUNK_LAST 2                         /**< flag: last chunk of its segment */
 #define ADCGS_CHUNK_TIER(flags) ((flags) >> 4 & 7) /**< bits 4 to 6 of the flags of GEOM and FEAx: the tier */
 #define ADCGS_CHUNK_OF_TIER(tier) ((tier) << 4)
 
@@ -37,13 +38,13 @@ int adcgs_type_layer(uint32_t type);
 
 /** Bounds of a level (spec "Levels"). Every count is checked before anything is allocated for it. */
 typedef struct adcgs_level {
-    uint32_t anchors;  /**< per segment */
+    uint32_t anchors; /**< per segment */
     uint32_t segments;
     uint32_t depth;
     uint32_t weights;  /**< over the networks of the stream */
     uint32_t networks; /**< of the stream */
     uint64_t file_bytes, chunk_bytes, model_bytes;
-    uint64_t work;     /**< for decoding the stream and its primitives; one unit is about a multiplication and addition */
+    uint64_t work; /**< for decoding the stream and its primitives; one unit is about a multiplication and addition */
 } adcgs_level;
 #define ADCGS_LEVELS 3
 /** level 1..ADCGS_LEVELS. */
@@ -67,8 +68,8 @@ uint64_t adcgs_weights_work(uint64_t weights);
 typedef struct adcgs_source {
     adcgs_read_fn read;
     void *user;
-    uint64_t pos;       /**< bytes read so far */
-    uint8_t *payload;   /**< of the last chunk read; reused, grows as data arrives */
+    uint64_t pos;     /**< bytes read so far */
+    uint8_t *payload; /**< of the last chunk read; reused, grows as data arrives */
     size_t capacity;
     adcgs_memory *memory;
     adcgs_trace_fn trace; /**< receives the elements of chunk headers; may be NULL */
@@ -86,13 +87,13 @@ typedef struct adcgs_seekable {
 /** A chunk as read. The stream may have ended inside it. */
 typedef struct adcgs_chunk {
     uint32_t type;
-    char name[5];           /**< the type as text */
+    char name[5]; /**< the type as text */
     adcgs_syn_chunk_header header;
-    uint64_t origin;        /**< position of the chunk */
-    size_t available;       /**< payload bytes that were present */
-    int complete;           /**< header, payload and CRC were all present */
-    int ended;              /**< the stream ended before the header was complete */
-    uint32_t crc;           /**< of the payload */
+    uint64_t origin;  /**< position of the chunk */
+    size_t available; /**< payload bytes that were present */
+    int complete;     /**< header, payload and CRC were all present */
+    int ended;        /**< the stream ended before the header was complete */
+    uint32_t crc;     /**< of the payload */
 } adcgs_chunk;
 
 /** Fill buffer, as far as the stream goes. */

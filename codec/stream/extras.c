@@ -101,15 +101,14 @@ static int same_bits(double a, double b)
 
 static int same_lens(const adcgs_camera *a, const adcgs_camera *b)
 {
-    return a->width == b->width && a->height == b->height && same_bits(a->fx, b->fx) && same_bits(a->fy, b->fy)
-           && same_bits(a->cx, b->cx) && same_bits(a->cy, b->cy) && same_bits(a->near_plane, b->near_plane);
+    return a->width == b->width && a->height == b->height && same_bits(a->fx, b->fx) && same_bits(a->fy, b->fy) &&
+           same_bits(a->cx, b->cx) && same_bits(a->cy, b->cy) && same_bits(a->near_plane, b->near_plane);
 }
 
 static int fits_binary32(const double pose[12])
 {
     for (int i = 0; i < 12; i++)
-        if (!(pose[i] >= -ADCGS_WORLD_MAX && pose[i] <= ADCGS_WORLD_MAX)
-            || !same_bits((double)(float)pose[i], pose[i]))
+        if (!(pose[i] >= -ADCGS_WORLD_MAX && pose[i] <= ADCGS_WORLD_MAX) || !same_bits((double)(float)pose[i], pose[i]))
             return 0;
     return 1;
 }
@@ -118,7 +117,7 @@ static adcgs_status write_camera(adcgs_buffer *out, const adcgs_camera *c, const
 {
     const adcgs_syn_lens lens = lens_of(c);
     const int same = before && same_lens(c, before), brief = fits_binary32(c->cam_to_world);
-    const adcgs_syn_camera head = { (uint8_t)(same * CAMERA_SAME_LENS + brief * CAMERA_SHORT_POSE) };
+    const adcgs_syn_camera head = {(uint8_t)(same * CAMERA_SAME_LENS + brief * CAMERA_SHORT_POSE)};
     const char *end = memchr(c->name, 0, sizeof c->name);
     if (!end)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "cams: a camera's name has no terminating zero");

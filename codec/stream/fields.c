@@ -14,7 +14,7 @@ typedef struct field_value {
 
 static int type_bytes(int type)
 {
-    static const uint8_t bytes[] = { 1, 2, 4, 8, 2, 8, 4, 8 };
+    static const uint8_t bytes[] = {1, 2, 4, 8, 2, 8, 4, 8};
     return bytes[type];
 }
 

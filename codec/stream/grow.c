@@ -65,7 +65,7 @@ typedef struct state {
 
 static state note_state(const adcgs_grow *g)
 {
-    return (state){ g->writer, g->writer.stream->bytes, g->writer.stream->weights };
+    return (state){g->writer, g->writer.stream->bytes, g->writer.stream->weights};
 }
 
 /** Restore the state after a failed call, as if the call had not been made. */
@@ -119,7 +119,7 @@ adcgs_status adcgs_grow_segment(adcgs_grow *g, const adcgs_model *before, adcgs_
                                 adcgs_error *error)
 {
     adcgs_writer *w = &g->writer;
-    int64_t span[2] = { g->span[0], g->span[1] };
+    int64_t span[2] = {g->span[0], g->span[1]};
     ADCGS_TRY(adcgs_writer_check(w->stream, w->n_segments, before, model, span, error));
     if (w->n_segments == 0 && span[0] != w->stream->start_ticks)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment does not begin at the stream's start");

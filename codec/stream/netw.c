@@ -17,7 +17,7 @@ void adcgs_net_table_clear(adcgs_net_table *table)
     for (uint32_t i = 0; i < table->n; i++)
         adcgs_net_release(&table->nets[i], table->memory);
     adcgs_free(table->memory, table->nets);
-    *table = (adcgs_net_table){ .memory = table->memory };
+    *table = (adcgs_net_table){.memory = table->memory};
 }
 
 /** Reserve memory for n ids. */
@@ -217,9 +217,9 @@ adcgs_status adcgs_netw_parse(adcgs_parse *p, const adcgs_params *params, const 
 static adcgs_status write_layer(adcgs_buffer *out, const adcgs_net *net, int i, adcgs_error *error)
 {
     const adcgs_layer *l = &net->layer[i];
-    const adcgs_syn_layer weight = { (uint8_t)(l->residual * FORM_RESIDUAL + l->w.mode * FORM_MODE + l->w.e) };
-    const adcgs_syn_layer_bias bias = { (uint8_t)(l->b.mode * FORM_MODE + l->b.e) };
-    const adcgs_syn_layer_e24 e24 = { l->shift };
+    const adcgs_syn_layer weight = {(uint8_t)(l->residual * FORM_RESIDUAL + l->w.mode * FORM_MODE + l->w.e)};
+    const adcgs_syn_layer_bias bias = {(uint8_t)(l->b.mode * FORM_MODE + l->b.e)};
+    const adcgs_syn_layer_e24 e24 = {l->shift};
     if (i < net->n_layers - 1)
         adcgs_write_varint(out, l->w.rows);
     ADCGS_TRY(adcgs_syn_layer_write(out, "NETW", &weight, error));
@@ -230,9 +230,9 @@ static adcgs_status write_layer(adcgs_buffer *out, const adcgs_net *net, int i, 
 
 static adcgs_status write_shape(adcgs_buffer *out, const adcgs_net *net, adcgs_error *error)
 {
-    const adcgs_syn_net head = { net->role, net->n_layers };
-    const adcgs_syn_net_e24 e24 = { net->in_shift };
-    const adcgs_syn_net_prior prior = { net->sigma_shift, net->sigma_offset };
+    const adcgs_syn_net head = {net->role, net->n_layers};
+    const adcgs_syn_net_e24 e24 = {net->in_shift};
+    const adcgs_syn_net_prior prior = {net->sigma_shift, net->sigma_offset};
     ADCGS_TRY(adcgs_syn_net_write(out, "NETW", &head, error));
     if (is_e24(net->role))
         ADCGS_TRY(adcgs_syn_net_e24_write(out, "NETW", &e24, error));

@@ -12,15 +12,15 @@ typedef enum search { SEARCH_OVER, SEARCH_HEAD, SEARCH_KEY } search;
 
 struct adcgs_push_reader {
     adcgs_read_options options;
-    adcgs_error error;     /**< of the reader; a failure is final */
+    adcgs_error error; /**< of the reader; a failure is final */
     adcgs_stream_reader reader;
-    uint8_t *held;         /**< bytes received of the current chunk, or of the signature */
+    uint8_t *held;              /**< bytes received of the current chunk, or of the signature */
     size_t n, capacity, wanted; /**< bytes held; room for; bytes needed to continue */
-    size_t given;          /**< bytes of held already passed to the reader */
+    size_t given;               /**< bytes of held already passed to the reader */
     int has_signature, has_start, is_over;
-    int64_t start;         /**< tick at which the first segment begins */
-    int64_t end_before;    /**< tick at which the segment before the current one ends */
-    search search;         /**< state of tuning in */
+    int64_t start;      /**< tick at which the first segment begins */
+    int64_t end_before; /**< tick at which the segment before the current one ends */
+    search search;      /**< state of tuning in */
 };
 
 /** Read callback of the reader: returns held bytes. */
@@ -265,8 +265,7 @@ static adcgs_status end_search(adcgs_push_reader *p)
 {
     const unsigned long long bytes = p->reader.source.pos + p->n;
     if (p->search == SEARCH_HEAD)
-        return adcgs_fail(&p->error, ADCGS_ERR_DATA, "stream: not an adcgs stream: its %llu bytes contain no header",
-                          bytes);
+        return adcgs_fail(&p->error, ADCGS_ERR_DATA, "stream: not an adcgs stream: its %llu bytes contain no header", bytes);
     return adcgs_fail(&p->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before a key segment", bytes);
 }
 

@@ -36,14 +36,14 @@ adcgs_status adcgs_push_read(adcgs_stream *stream, adcgs_read_fn read, void *use
 int adcgs_push_has_head(const adcgs_push_reader *reader);
 /** Progress of receiving a stream. */
 typedef struct adcgs_push_progress {
-    int is_over;            /**< the stream is complete, or no more bytes will come */
+    int is_over; /**< the stream is complete, or no more bytes will come */
     uint64_t bytes;
-    int64_t start;          /**< tick at which the first segment begins; before it has begun, the value in HEAD */
-    int64_t end;            /**< tick, from HEAD; INT64_MAX: not given */
-    int64_t committed;      /**< tick before which content no longer changes; INT64_MIN: all may, INT64_MAX: nothing will */
-    int64_t available;      /**< tick at which the renderable content ends; INT64_MIN: none */
-    uint32_t segments;      /**< complete segments, including those freed */
-    uint32_t total;         /**< from HEAD; 0: not given */
+    int64_t start;             /**< tick at which the first segment begins; before it has begun, the value in HEAD */
+    int64_t end;               /**< tick, from HEAD; INT64_MAX: not given */
+    int64_t committed;         /**< tick before which content no longer changes; INT64_MIN: all may, INT64_MAX: nothing will */
+    int64_t available;         /**< tick at which the renderable content ends; INT64_MIN: none */
+    uint32_t segments;         /**< complete segments, including those freed */
+    uint32_t total;            /**< from HEAD; 0: not given */
     int tiers, tiers_received; /**< of the segment being received; 0: none */
 } adcgs_push_progress;
 /** Only after HEAD has been received. */

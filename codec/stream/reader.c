@@ -26,8 +26,11 @@ adcgs_status adcgs_stream_reader_signature(adcgs_stream_reader *s)
 /** Parser for the elements of a chunk outside its payload. */
 static adcgs_parse chunk_parts(const adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
-    const adcgs_parse p = { .origin = chunk->origin, .chunk = "chunk", .trace = s->trace, .trace_user = s->trace_user,
-                            .error = s->error };
+    const adcgs_parse p = {.origin = chunk->origin,
+                           .chunk = "chunk",
+                           .trace = s->trace,
+                           .trace_user = s->trace_user,
+                           .error = s->error};
     return p;
 }
 
@@ -64,7 +67,7 @@ static adcgs_status read_head(adcgs_stream_reader *s, adcgs_parse *p)
     s->head_bytes = bytes;
     s->segment.limits = adcgs_level_get(s->stream->level);
     s->segment.max_anchors = s->head.max_anchors;
-    s->segment.left = (adcgs_cost){ s->segment.limits->model_bytes, s->segment.limits->work };
+    s->segment.left = (adcgs_cost){s->segment.limits->model_bytes, s->segment.limits->work};
     return ADCGS_OK;
 }
 
@@ -209,8 +212,11 @@ adcgs_status adcgs_stream_reader_chunk(adcgs_stream_reader *s, int *truncated)
         return ADCGS_OK;
     ADCGS_TRY(check_chunk(s, &chunk));
     adcgs_bytes_count(&s->stream->bytes, chunk.type, chunk.available);
-    adcgs_parse p = { .origin = chunk.origin + ADCGS_CHUNK_HEADER_BYTES, .chunk = chunk.name, .trace = s->trace,
-                      .trace_user = s->trace_user, .error = s->error };
+    adcgs_parse p = {.origin = chunk.origin + ADCGS_CHUNK_HEADER_BYTES,
+                     .chunk = chunk.name,
+                     .trace = s->trace,
+                     .trace_user = s->trace_user,
+                     .error = s->error};
     adcgs_reader_init(&p.r, s->source.payload, chunk.available);
     ADCGS_TRY(use_or_skip(s, &chunk, &p));
     if (chunk.complete)
@@ -230,8 +236,8 @@ static adcgs_status end_early(adcgs_stream_reader *s)
         return adcgs_fail(s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before the base layer of its first segment",
                           at);
     s->stream->truncated = 1;
-    adcgs_log_say(&s->options->log, ADCGS_LOG_WARNING, "stream: ends at byte %llu, before ENDC: %u segments are used",
-                  at, (unsigned)adcgs_stream_reader_segments(s));
+    adcgs_log_say(&s->options->log, ADCGS_LOG_WARNING, "stream: ends at byte %llu, before ENDC: %u segments are used", at,
+                  (unsigned)adcgs_stream_reader_segments(s));
     return ADCGS_OK;
 }
 
@@ -256,9 +262,9 @@ void adcgs_stream_reader_init(adcgs_stream_reader *s, adcgs_stream *stream, adcg
     s->stream = stream;
     s->options = options;
     s->error = error;
-    s->source = (adcgs_source){ .read = read, .user = user, .memory = options->memory };
+    s->source = (adcgs_source){.read = read, .user = user, .memory = options->memory};
     s->nets.memory = options->memory;
-    s->segment = (adcgs_segment){ .stream = stream, .options = options, .nets = &s->nets, .error = error };
+    s->segment = (adcgs_segment){.stream = stream, .options = options, .nets = &s->nets, .error = error};
 }
 
 void adcgs_stream_reader_clear(adcgs_stream_reader *s)
@@ -272,7 +278,7 @@ void adcgs_stream_reader_clear(adcgs_stream_reader *s)
 adcgs_status adcgs_stream_read(adcgs_stream *stream, adcgs_read_fn read, void *user, const adcgs_read_options *options,
                                adcgs_trace_fn trace, void *trace_user, adcgs_error *error)
 {
-    adcgs_error why = { ADCGS_OK, "" };
+    adcgs_error why = {ADCGS_OK, ""};
     adcgs_stream_reader s;
     adcgs_stream_init(stream);
     adcgs_stream_reader_init(&s, stream, read, user, options, &why);

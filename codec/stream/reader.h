@@ -10,13 +10,13 @@ typedef struct adcgs_stream_reader {
     const adcgs_read_options *options; /**< must outlive the reader */
     adcgs_source source;
     adcgs_syn_head head;
-    uint8_t *head_payload;  /**< for comparing repetitions; NULL before HEAD */
+    uint8_t *head_payload; /**< for comparing repetitions; NULL before HEAD */
     size_t head_bytes;
     adcgs_net_table nets;
     adcgs_segment segment;
-    int indexed, ended;     /**< INDX, ENDC were read */
-    int joined;             /**< tuned in: the totals in INDX and ENDC cannot be checked */
-    uint32_t crc_of_crcs;   /**< over the chunks before the current one */
+    int indexed, ended;   /**< INDX, ENDC were read */
+    int joined;           /**< tuned in: the totals in INDX and ENDC cannot be checked */
+    uint32_t crc_of_crcs; /**< over the chunks before the current one */
     adcgs_trace_fn trace;
     void *trace_user;
     adcgs_error *error;

@@ -16,12 +16,12 @@ typedef struct salvage {
     adcgs_stream *stream;
     adcgs_read_options options;
     adcgs_stream_reader reader;
-    adcgs_error why;    /**< failure of the reader */
-    uint64_t left;      /**< bytes that may still be read */
+    adcgs_error why; /**< failure of the reader */
+    uint64_t left;   /**< bytes that may still be read */
     uint32_t faults;
-    int is_cut;         /**< tiers of the current segment were lost: its further chunks are skipped */
-    int is_broken;      /**< a segment was lost since the last one that is not predicted */
-    uint8_t *piece;     /**< [PIECE_BYTES] */
+    int is_cut;     /**< tiers of the current segment were lost: its further chunks are skipped */
+    int is_broken;  /**< a segment was lost since the last one that is not predicted */
+    uint8_t *piece; /**< [PIECE_BYTES] */
 } salvage;
 
 static void warn(salvage *s, const char *format, ...) ADCGS_PRINTF(2, 3);
@@ -147,7 +147,7 @@ static adcgs_status use_start(salvage *s, const adcgs_chunk *chunk)
 /** Use a damaged layer, as far as its slices are intact. */
 static adcgs_status use_damaged_layer(salvage *s, const adcgs_chunk *chunk, size_t available)
 {
-    adcgs_parse p = { .origin = chunk->origin + ADCGS_CHUNK_HEADER_BYTES, .chunk = chunk->name, .error = &s->why };
+    adcgs_parse p = {.origin = chunk->origin + ADCGS_CHUNK_HEADER_BYTES, .chunk = chunk->name, .error = &s->why};
     adcgs_reader_init(&p.r, s->reader.source.payload, available);
     return adcgs_segment_features(&s->reader.segment, &p, adcgs_type_layer(chunk->type), 0);
 }
@@ -157,8 +157,7 @@ static adcgs_status use_part(salvage *s, const adcgs_chunk *chunk, int whole, si
 {
     const int layer = adcgs_type_layer(chunk->type);
     adcgs_status status = ADCGS_OK;
-    if (s->reader.segment.stage == ADCGS_SEGMENT_NONE || chunk->header.segment != (number_at_hand(s) & 0xffff) ||
-        s->is_cut)
+    if (s->reader.segment.stage == ADCGS_SEGMENT_NONE || chunk->header.segment != (number_at_hand(s) & 0xffff) || s->is_cut)
         return ADCGS_OK; /* its segment is lost */
     if (whole)
         status = use(s, chunk);
@@ -307,7 +306,7 @@ static adcgs_status end(salvage *s)
 uint64_t adcgs_salvage_bytes(const uint8_t *data, size_t bytes)
 {
     const size_t least = ADCGS_SIGNATURE_BYTES + ADCGS_CHUNK_BYTES;
-    adcgs_parse p = { .chunk = "HEAD" };
+    adcgs_parse p = {.chunk = "HEAD"};
     adcgs_syn_version version;
     adcgs_chunk chunk;
     if (bytes < least || !is_header(data + ADCGS_SIGNATURE_BYTES, ADCGS_SIGNATURE_BYTES, &chunk) ||
@@ -324,7 +323,7 @@ uint64_t adcgs_salvage_bytes(const uint8_t *data, size_t bytes)
 adcgs_status adcgs_stream_salvage(adcgs_stream *stream, adcgs_read_at_fn read, void *user, uint64_t size,
                                   const adcgs_read_options *options, uint32_t *faults, adcgs_error *error)
 {
-    salvage s = { .input = { .read = read, .user = user, .size = size }, .stream = stream, .options = *options };
+    salvage s = {.input = {.read = read, .user = user, .size = size}, .stream = stream, .options = *options};
     s.options.conceal = 1;
     s.left = READ_AGAIN * size + PIECE_BYTES;
     adcgs_stream_init(stream);

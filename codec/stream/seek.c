@@ -8,17 +8,17 @@
 struct adcgs_seek {
     adcgs_seekable input;
     adcgs_read_options options;
-    adcgs_error error;   /**< failure of the reader */
+    adcgs_error error; /**< failure of the reader */
     adcgs_stream_reader reader;
     adcgs_stream *stream;
     adcgs_seek_table table; /**< never empty once open; the number of segments is fixed */
-    adcgs_cost *spent;   /**< [table.n] cost of each segment decoded so far; 0: not yet decoded */
-    adcgs_cost left;     /**< bounds of the level, less the costs of the front and of all of spent */
-    uint64_t first;      /**< position of the first segment */
-    int by_index;        /**< the table comes from INDX and has not been compared with the chunks yet */
-    uint32_t first_nets; /**< number of networks before the first segment */
-    int keeps_nets;      /**< a segment refers to networks sent before its key: read from the beginning and keep all networks */
-    int passes;          /**< decoding began at, or passed, a later key: networks sent before it are not in memory */
+    adcgs_cost *spent;      /**< [table.n] cost of each segment decoded so far; 0: not yet decoded */
+    adcgs_cost left;        /**< bounds of the level, less the costs of the front and of all of spent */
+    uint64_t first;         /**< position of the first segment */
+    int by_index;           /**< the table comes from INDX and has not been compared with the chunks yet */
+    uint32_t first_nets;    /**< number of networks before the first segment */
+    int keeps_nets; /**< a segment refers to networks sent before its key: read from the beginning and keep all networks */
+    int passes;     /**< decoding began at, or passed, a later key: networks sent before it are not in memory */
 };
 
 /** Report the reader's failure to the caller. */
@@ -35,8 +35,8 @@ static adcgs_status use_chunk(adcgs_seek *s, uint64_t position)
     adcgs_source_move(&s->reader.source, position);
     ADCGS_TRY(adcgs_stream_reader_chunk(&s->reader, &truncated));
     return truncated ? adcgs_fail(&s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, inside a chunk",
-                                  (unsigned long long)s->input.size) :
-                       ADCGS_OK;
+                                  (unsigned long long)s->input.size)
+                     : ADCGS_OK;
 }
 
 /** Read everything before the first segment. */
@@ -91,7 +91,7 @@ adcgs_status adcgs_seek_open(adcgs_seek **out, adcgs_stream *stream, adcgs_read_
     *out = NULL;
     if (!s)
         return adcgs_alloc_status(error);
-    s->input = (adcgs_seekable){ .read = read, .user = user, .size = size };
+    s->input = (adcgs_seekable){.read = read, .user = user, .size = size};
     s->options = *options;
     s->stream = stream;
     adcgs_stream_reader_init(&s->reader, stream, adcgs_seekable_read, &s->input, &s->options, &s->error);
@@ -165,8 +165,8 @@ static adcgs_status use_chunks(adcgs_seek *s, const adcgs_syn_index *e, uint64_t
             ADCGS_TRY(use_chunk(s, at));
         at = adcgs_seek_behind(&chunk);
     }
-    return at == end ? ADCGS_OK :
-                       adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: the segment at byte %llu does not end at byte %llu",
+    return at == end ? ADCGS_OK
+                     : adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: the segment at byte %llu does not end at byte %llu",
                                   (unsigned long long)e->offset, (unsigned long long)end);
 }
 
@@ -178,7 +178,7 @@ static adcgs_status decode(adcgs_seek *s, uint32_t number)
     const uint64_t end = e->offset + e->bytes;
     adcgs_segment *segment = &s->reader.segment;
     /* Each segment counts once, however often it is decoded: the sum is that of reading the whole stream (REQ-STRM-052). */
-    const adcgs_cost most = { s->left.bytes + s->spent[number].bytes, s->left.work + s->spent[number].work };
+    const adcgs_cost most = {s->left.bytes + s->spent[number].bytes, s->left.work + s->spent[number].work};
     segment->left = most;
     segment->index.size = 0;
     ADCGS_TRY(use_chunks(s, e, end));
@@ -189,7 +189,7 @@ static adcgs_status decode(adcgs_seek *s, uint32_t number)
     if (segment->ticks[0] != e->start_ticks || segment->ticks[1] != e->end_ticks || segment->ticks[2] != e->reach_ticks)
         return adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: segment %u has other times in its SEGM", number);
     s->left = segment->left;
-    s->spent[number] = (adcgs_cost){ most.bytes - s->left.bytes, most.work - s->left.work };
+    s->spent[number] = (adcgs_cost){most.bytes - s->left.bytes, most.work - s->left.work};
     return ADCGS_OK;
 }
 
@@ -234,7 +234,7 @@ static adcgs_status go_to(adcgs_seek *s, uint32_t number, int before)
 static int doubts_index(adcgs_seek *s)
 {
     const adcgs_error why = s->error;
-    adcgs_seek_table found = { 0 };
+    adcgs_seek_table found = {0};
     if (!s->by_index)
         return 0;
     s->by_index = 0;

@@ -22,9 +22,9 @@ static adcgs_status fetch(adcgs_stream_reader *r, uint64_t position, void *to, s
         return adcgs_fail(r->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before ENDC", (unsigned long long)size);
     adcgs_source_move(&r->source, position);
     ADCGS_TRY(adcgs_source_read(&r->source, to, bytes, &got, r->error));
-    return got == bytes ? ADCGS_OK :
-                          adcgs_fail(r->error, ADCGS_ERR_IO, "stream: reading failed at byte %llu",
-                                     (unsigned long long)(position + got));
+    return got == bytes
+               ? ADCGS_OK
+               : adcgs_fail(r->error, ADCGS_ERR_IO, "stream: reading failed at byte %llu", (unsigned long long)(position + got));
 }
 
 /** Read the header of the chunk at a position, and check that the whole chunk is present. */
@@ -54,7 +54,7 @@ uint64_t adcgs_seek_behind(const adcgs_chunk *chunk)
 void adcgs_seek_table_clear(adcgs_seek_table *t, adcgs_memory *memory)
 {
     adcgs_free(memory, t->entry);
-    *t = (adcgs_seek_table){ 0 };
+    *t = (adcgs_seek_table){0};
 }
 
 static int same_entry(const adcgs_syn_index *a, const adcgs_syn_index *b)
@@ -118,7 +118,7 @@ static uint64_t index_position(const adcgs_stream_reader *r)
 static adcgs_status parse_entries(adcgs_seek_table *t, adcgs_stream_reader *r, const uint8_t *payload, size_t bytes,
                                   uint64_t first, uint64_t end)
 {
-    adcgs_parse p = { .chunk = "INDX", .error = r->error };
+    adcgs_parse p = {.chunk = "INDX", .error = r->error};
     uint32_t n;
     adcgs_reader_init(&p.r, payload, bytes);
     ADCGS_TRY(adcgs_parse_varint(&p, "segments", r->head.segments, r->head.segments, &n));
@@ -153,8 +153,7 @@ adcgs_status adcgs_seek_table_index(adcgs_seek_table *t, adcgs_stream_reader *r,
     if (at < first)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "INDX: the stream has none");
     ADCGS_TRY(look_whole(r, at, &chunk)); /* not limited by the level: it may not be a chunk of the stream */
-    if (chunk.type != ADCGS_TYPE_INDX || chunk.header.version > 0 ||
-        adcgs_seek_behind(&chunk) != size_of(r) - ENDC_BYTES)
+    if (chunk.type != ADCGS_TYPE_INDX || chunk.header.version > 0 || adcgs_seek_behind(&chunk) != size_of(r) - ENDC_BYTES)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "INDX: the stream has none");
     uint8_t *payload = adcgs_alloc(r->options->memory, chunk.header.length, 1, r->error);
     if (!payload)
@@ -172,13 +171,13 @@ static int is_tick(int64_t ticks)
 /** Add the segment of a SEGM, which ends the previous one. */
 static adcgs_status meet_segment(adcgs_seek_table *t, adcgs_stream_reader *r, const adcgs_chunk *chunk)
 {
-    uint8_t times[TIMES_BYTES] = { 0 };
+    uint8_t times[TIMES_BYTES] = {0};
     ADCGS_TRY(fetch(r, chunk->origin + ADCGS_CHUNK_HEADER_BYTES, times, ADCGS_MIN(sizeof times, (size_t)chunk->header.length)));
-    const adcgs_syn_index entry = { .start_ticks = (int64_t)adcgs_load_le64(times),
-                                    .end_ticks = (int64_t)adcgs_load_le64(times + 8),
-                                    .reach_ticks = adcgs_load_le32(times + 16),
-                                    .offset = chunk->origin,
-                                    .key = chunk->header.flags & ADCGS_CHUNK_KEY };
+    const adcgs_syn_index entry = {.start_ticks = (int64_t)adcgs_load_le64(times),
+                                   .end_ticks = (int64_t)adcgs_load_le64(times + 8),
+                                   .reach_ticks = adcgs_load_le32(times + 16),
+                                   .offset = chunk->origin,
+                                   .key = chunk->header.flags & ADCGS_CHUNK_KEY};
     if (chunk->header.length < sizeof times || !is_tick(entry.start_ticks) || !is_tick(entry.end_ticks) || !follows(t, &entry))
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "SEGM: too short, or not later than the previous segment");
     return add_entry(t, r, &entry);

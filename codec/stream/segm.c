@@ -59,7 +59,7 @@ static adcgs_status parse_steps(adcgs_parse *p, float *d, int n)
 
 static adcgs_status write_steps(adcgs_buffer *out, const float *d, int n, adcgs_error *error)
 {
-    adcgs_syn_step_form form = { STEPS_EQUAL | STEPS_SHORT };
+    adcgs_syn_step_form form = {STEPS_EQUAL | STEPS_SHORT};
     if (n == 0)
         return ADCGS_OK;
     for (int i = 0; i < n; i++) {
@@ -70,8 +70,8 @@ static adcgs_status write_steps(adcgs_buffer *out, const float *d, int n, adcgs_
     }
     ADCGS_TRY(adcgs_syn_step_form_write(out, "SEGM", &form, error));
     for (int i = 0; i < (form.step_form & STEPS_EQUAL ? 1 : n); i++) {
-        const adcgs_syn_step step = { d[i] };
-        const adcgs_syn_step_short high = { (uint16_t)(adcgs_float_bits(d[i]) >> 16) };
+        const adcgs_syn_step step = {d[i]};
+        const adcgs_syn_step_short high = {(uint16_t)(adcgs_float_bits(d[i]) >> 16)};
         if (form.step_form & STEPS_SHORT)
             ADCGS_TRY(adcgs_syn_step_short_write(out, "SEGM", &high, error));
         else
@@ -180,12 +180,12 @@ adcgs_status adcgs_reach_ticks(const adcgs_stream *stream, const adcgs_model *mo
 
 static adcgs_status write_values(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error)
 {
-    adcgs_syn_shapes shapes = { .tiers = (uint8_t)(model->finest + 1) };
+    adcgs_syn_shapes shapes = {.tiers = (uint8_t)(model->finest + 1)};
     for (int g = 0; g < ADCGS_GROUPS; g++)
         shapes.shapes |= (uint16_t)(model->shape[g] << 2 * g);
     ADCGS_TRY(adcgs_syn_shapes_write(out, "SEGM", &shapes, error));
     for (int t = 0; t < model->finest; t++) {
-        const adcgs_syn_growth growth = { model->growth[t] };
+        const adcgs_syn_growth growth = {model->growth[t]};
         ADCGS_TRY(adcgs_syn_growth_write(out, "SEGM", &growth, error));
     }
     ADCGS_TRY(write_steps(out, model->d_fv, model->params.n_fv, error));
@@ -193,7 +193,7 @@ static adcgs_status write_values(adcgs_buffer *out, const adcgs_model *model, ad
     ADCGS_TRY(write_steps(out, model->d_colour, ADCGS_COLOUR_N, error));
     ADCGS_TRY(write_steps(out, model->d_fg, model->params.n_fg, error));
     for (int i = 0; i < model->params.n_eta; i++) {
-        const adcgs_syn_eta eta = { model->eta_mu[i], model->eta_si[i] };
+        const adcgs_syn_eta eta = {model->eta_mu[i], model->eta_si[i]};
         ADCGS_TRY(adcgs_syn_eta_write(out, "SEGM", &eta, error));
     }
     return ADCGS_OK;
@@ -202,7 +202,7 @@ static adcgs_status write_values(adcgs_buffer *out, const adcgs_model *model, ad
 adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, const adcgs_model *model, const adcgs_role_ids *ids,
                               adcgs_error *error)
 {
-    adcgs_syn_segm segm = { .predicted = model->predicted, .roles = ids->mask };
+    adcgs_syn_segm segm = {.predicted = model->predicted, .roles = ids->mask};
     ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &segm.start_ticks, error));
     ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &segm.end_ticks, error));
     ADCGS_TRY(adcgs_reach_ticks(stream, model, &segm.reach_ticks, error));
@@ -230,7 +230,7 @@ static adcgs_status spend(const adcgs_parse *p, const adcgs_level *limits, adcgs
 adcgs_status adcgs_keep_parse(adcgs_parse *p, const adcgs_level *limits, const adcgs_model *before, adcgs_inter *kept,
                               adcgs_cost *left, adcgs_memory *memory)
 {
-    const adcgs_cost cost = { .work = adcgs_inter_work(adcgs_inter_values(before)) };
+    const adcgs_cost cost = {.work = adcgs_inter_work(adcgs_inter_values(before))};
     const size_t bytes = adcgs_reader_left(&p->r);
     const uint8_t *data;
     adcgs_range_dec d;
@@ -295,10 +295,10 @@ adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_
 
 adcgs_status adcgs_geom_write(adcgs_buffer *out, const adcgs_model *model, int tier, adcgs_error *error)
 {
-    const adcgs_syn_geom geom = { .anchors = model->n };
+    const adcgs_syn_geom geom = {.anchors = model->n};
     ADCGS_TRY(adcgs_syn_geom_write(out, "GEOM", &geom, error));
     if (!model->predicted && tier == 0) {
-        adcgs_syn_grid grid = { .depth = model->depth, .voxel = model->voxel };
+        adcgs_syn_grid grid = {.depth = model->depth, .voxel = model->voxel};
         memcpy(grid.origin, model->origin, sizeof grid.origin);
         ADCGS_TRY(adcgs_syn_grid_write(out, "GEOM", &grid, error));
     }

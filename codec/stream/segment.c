@@ -65,14 +65,13 @@ void adcgs_segment_clear(adcgs_segment *s)
 static adcgs_status check_times(const adcgs_segment *s, const int64_t ticks[3])
 {
     const adcgs_stream *stream = s->stream;
-    if (ticks[0] < stream->start_ticks
-        || (stream->duration_ticks >= 0 && ticks[1] - stream->start_ticks > stream->duration_ticks))
+    if (ticks[0] < stream->start_ticks ||
+        (stream->duration_ticks >= 0 && ticks[1] - stream->start_ticks > stream->duration_ticks))
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: ticks %lld..%lld lie outside the span in HEAD", (long long)ticks[0],
                           (long long)ticks[1]);
     if (stream->n_segments > 0 && (ticks[0] <= s->ticks[0] || ticks[0] < s->ticks[1]))
-        return adcgs_fail(s->error, ADCGS_ERR_DATA,
-                          "SEGM: start_ticks is %lld, before the end of the previous segment, %lld", (long long)ticks[0],
-                          (long long)s->ticks[1]);
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: start_ticks is %lld, before the end of the previous segment, %lld",
+                          (long long)ticks[0], (long long)s->ticks[1]);
     return ADCGS_OK;
 }
 
@@ -113,7 +112,7 @@ adcgs_status adcgs_segment_keep(adcgs_segment *s, adcgs_parse *p)
     if (s->stage != ADCGS_SEGMENT_STARTED || !s->model.predicted || s->has_kept)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "KEEP: expected once, after SEGM of a predicted segment");
     s->has_kept = 1;
-    adcgs_inter kept = { .n = 0 };
+    adcgs_inter kept = {.n = 0};
     adcgs_status status = adcgs_keep_parse(p, s->limits, model_before(s), &kept, &s->left, s->options->memory);
     if (status == ADCGS_OK)
         status = adcgs_inter_model(&s->coarser, &kept, model_before(s), s->options->memory, s->error);
@@ -132,7 +131,7 @@ static const adcgs_net *net_of(const adcgs_segment *s, int role)
 /** Check that the networks named by SEGM exist, and add up their cost and that of inherited networks. */
 static adcgs_status check_nets(const adcgs_segment *s, adcgs_nets_cost *cost)
 {
-    *cost = (adcgs_nets_cost){ 0, 0 };
+    *cost = (adcgs_nets_cost){0, 0};
     for (int role = 0; role < ADCGS_ROLES; role++) {
         const uint32_t id = s->ids.id[role];
         if (s->ids.mask >> role & 1 && (id >= s->nets->n || !s->nets->nets[id].present || s->nets->nets[id].role != role))
@@ -193,8 +192,8 @@ static adcgs_status place_anchors(adcgs_segment *s, adcgs_parse *p)
     ADCGS_TRY(check_nets(s, &cost));
     if (s->tier > 0)
         cost.weights = 0; /* the tiers share these networks: their weights count once */
-    ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, s->coarser.n, s->tier, &s->model, &s->left, &cost,
-                               s->options->memory));
+    ADCGS_TRY(
+        adcgs_geom_parse(p, s->limits, s->max_anchors, s->coarser.n, s->tier, &s->model, &s->left, &cost, s->options->memory));
     if (s->model.n)
         memset(s->model.tier, s->tier, s->model.n);
     ADCGS_TRY(adcgs_tiers_check(&s->coarser, &s->model, s->error));
@@ -289,14 +288,14 @@ static void explain(const slice_job *job, uint32_t index, adcgs_error *why)
 static adcgs_status decode_slices(adcgs_segment *s, const adcgs_parse *p, int layer, uint32_t first, slice *slices,
                                   uint32_t usable)
 {
-    slice_job job = { s, slices, p->r.data, first, layer, NULL, adcgs_latents_room(s->latents) };
+    slice_job job = {s, slices, p->r.data, first, layer, NULL, adcgs_latents_room(s->latents)};
     job.room = adcgs_alloc(NULL, (size_t)adcgs_pool_threads(s->options->pool), job.room_each, s->error);
     if (!job.room)
         return adcgs_alloc_status(s->error);
     adcgs_pool_run(s->options->pool, decode_slice, &job, (int)usable);
     adcgs_free(NULL, job.room);
     for (uint32_t i = 0; i < usable; i++) {
-        adcgs_error why = { ADCGS_OK, "" };
+        adcgs_error why = {ADCGS_OK, ""};
         if (slices[i].status == ADCGS_OK) {
             adcgs_parse_trace_end(p, &slices[i].range);
             continue;
@@ -338,8 +337,8 @@ static adcgs_status check_slices(adcgs_segment *s, const adcgs_parse *p, slice *
             continue;
         if (s->options->conceal)
             break;
-        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: segment %u, slice %u: checksum is wrong", p->chunk,
-                              segment_number(s), first + *usable);
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: segment %u, slice %u: checksum is wrong", p->chunk, segment_number(s),
+                          first + *usable);
     }
     return ADCGS_OK;
 }
@@ -485,8 +484,8 @@ static adcgs_status append_model(adcgs_segment *s)
 
 adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
 {
-    const adcgs_syn_index entry = { s->ticks[0], s->ticks[1], (uint32_t)s->ticks[2], s->origin, end - s->origin,
-                                    (uint8_t)s->is_key };
+    const adcgs_syn_index entry = {s->ticks[0], s->ticks[1],     (uint32_t)s->ticks[2],
+                                   s->origin,   end - s->origin, (uint8_t)s->is_key};
     if (s->stage == ADCGS_SEGMENT_NONE)
         return ADCGS_OK;
     if (!tier_is_complete(s) && !truncated)

@@ -15,21 +15,21 @@ typedef struct adcgs_segment {
     const adcgs_level *limits;
     uint32_t max_anchors;
     const adcgs_net_table *nets;
-    uint32_t capacity;    /**< of stream->segments */
-    adcgs_cost left;      /**< remaining model bytes and work of the level */
-    adcgs_buffer index;   /**< expected contents of INDX, without the count */
-    int64_t ticks[3];     /**< of the last segment read: start, end, reach */
+    uint32_t capacity;  /**< of stream->segments */
+    adcgs_cost left;    /**< remaining model bytes and work of the level */
+    adcgs_buffer index; /**< expected contents of INDX, without the count */
+    int64_t ticks[3];   /**< of the last segment read: start, end, reach */
 
     adcgs_segment_stage stage;
-    uint64_t origin;      /**< position of SEGM */
-    adcgs_model model;    /**< model with the anchors of the last GEOM, until it is finished */
-    adcgs_model coarser;  /**< kept anchors, or the earlier tiers joined; without networks. n = 0: none */
-    int tier;             /**< tier of the current model */
-    int is_joined;        /**< the model already has everything received of its tier, and the coarser anchors */
+    uint64_t origin;     /**< position of SEGM */
+    adcgs_model model;   /**< model with the anchors of the last GEOM, until it is finished */
+    adcgs_model coarser; /**< kept anchors, or the earlier tiers joined; without networks. n = 0: none */
+    int tier;            /**< tier of the current model */
+    int is_joined;       /**< the model already has everything received of its tier, and the coarser anchors */
     adcgs_role_ids ids;
-    uint16_t sent;        /**< roles whose networks were sent in the segment, before GEOM */
-    int has_kept;         /**< KEEP was read */
-    int is_key;           /**< depends on no earlier segment */
+    uint16_t sent; /**< roles whose networks were sent in the segment, before GEOM */
+    int has_kept;  /**< KEEP was read */
+    int is_key;    /**< depends on no earlier segment */
     adcgs_latents *latents;
     uint32_t n_slices;
     uint32_t done[ADCGS_LAYERS]; /**< slices decoded, by layer */

@@ -71,9 +71,9 @@ static void add_segment(adcgs_info *info, const adcgs_model *model)
 
 void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info)
 {
-    static const char *const colours[] = { "unknown", "sRGB", "linear BT.709" };
-    static const char *const axes[] = { "unknown", "right-handed, y up", "right-handed, z up", "right-handed, y down" };
-    static const char *const units[] = { "unknown", "metre" };
+    static const char *const colours[] = {"unknown", "sRGB", "linear BT.709"};
+    static const char *const axes[] = {"unknown", "right-handed, y up", "right-handed, z up", "right-handed, y down"};
+    static const char *const units[] = {"unknown", "metre"};
     *info = (adcgs_info){
         .version_major = ADCGS_BITSTREAM_MAJOR,
         .version_minor = ADCGS_BITSTREAM_MINOR,

@@ -17,28 +17,28 @@ typedef struct adcgs_meta {
 } adcgs_meta;
 
 typedef struct adcgs_stream {
-    uint8_t profile, level, arith;  /**< level 0, for writing: the lowest that fits */
+    uint8_t profile, level, arith; /**< level 0, for writing: the lowest that fits */
     uint8_t slice_log2;            /**< anchors per slice = 2^slice_log2 */
     adcgs_params params;
     uint32_t timebase_num, timebase_den; /**< seconds per tick = num/den */
-    uint32_t rate_num, rate_den;   /**< suggested frames per second for playing */
+    uint32_t rate_num, rate_den;         /**< suggested frames per second for playing */
     int64_t start_ticks, duration_ticks;
     double scene_origin[3], scene_scale; /**< world = origin + scale * scene units */
     float background[3];
-    float screen_filter;           /**< variance in pixels^2 added to every projected splat, 0..16 */
-    uint8_t colour_space;          /**< 0 unknown, 1 sRGB, 2 linear BT.709 */
-    uint8_t axes;                  /**< 0 unknown, 1 right-handed y up, 2 right-handed z up, 3 right-handed y down */
-    uint8_t units;                 /**< 0 unknown, 1 metre */
+    float screen_filter;  /**< variance in pixels^2 added to every projected splat, 0..16 */
+    uint8_t colour_space; /**< 0 unknown, 1 sRGB, 2 linear BT.709 */
+    uint8_t axes;         /**< 0 unknown, 1 right-handed y up, 2 right-handed z up, 3 right-handed y down */
+    uint8_t units;        /**< 0 unknown, 1 metre */
     uint32_t n_cameras;
-    adcgs_camera *cameras;         /**< [n_cameras] */
+    adcgs_camera *cameras; /**< [n_cameras] */
     uint32_t n_meta;
     adcgs_meta *meta;
     uint32_t n_segments;
-    uint32_t first_segment;        /**< number of segments[0]: above 0 if earlier ones were freed or missed */
-    adcgs_model *segments;         /**< [n_segments], in time order; time_start/end in seconds are derived from ticks */
+    uint32_t first_segment; /**< number of segments[0]: above 0 if earlier ones were freed or missed */
+    adcgs_model *segments;  /**< [n_segments], in time order; time_start/end in seconds are derived from ticks */
     int truncated;
-    uint32_t weights;              /**< of distinct networks; filled by reading and by writing */
-    adcgs_bytes bytes;             /**< filled by reading and by writing */
+    uint32_t weights;  /**< of distinct networks; filled by reading and by writing */
+    adcgs_bytes bytes; /**< filled by reading and by writing */
 } adcgs_stream;
 
 /** Zero, with defaults: timebase 1/1000, rate 30, slices of 1024, scale 1, filter 0.3. */
@@ -63,14 +63,14 @@ adcgs_status adcgs_reach_ticks(const adcgs_stream *stream, const adcgs_model *mo
 adcgs_status adcgs_stream_write(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error);
 
 typedef struct adcgs_read_options {
-    adcgs_cpu_level cpu;   /**< resolved */
-    adcgs_pool *pool;      /**< may be NULL */
-    adcgs_memory *memory;  /**< may be NULL */
+    adcgs_cpu_level cpu;  /**< resolved */
+    adcgs_pool *pool;     /**< may be NULL */
+    adcgs_memory *memory; /**< may be NULL */
     adcgs_log log;
-    int layers;            /**< 1..5, 0: all */
+    int layers; /**< 1..5, 0: all */
     int strict_end;
-    int conceal;           /**< slices after a damaged one are treated as missing */
-    int tune_in;           /**< if the beginning is missing, start at the next HEAD (push.h) */
+    int conceal; /**< slices after a damaged one are treated as missing */
+    int tune_in; /**< if the beginning is missing, start at the next HEAD (push.h) */
 } adcgs_read_options;
 
 /** Called for each line of the trace (spec "Trace"), in the caller's thread: absolute bit position, name, value as text. */

@@ -4,14 +4,14 @@
 
 #include "geom/geom.h"
 
-#define FIELD(type, name, min, max) { #name, ADCGS_##type, 1, offsetof(current, name), min, max },
-#define FIELDS(type, name, count, min, max) { #name, ADCGS_##type, count, offsetof(current, name), min, max },
+#define FIELD(type, name, min, max) {#name, ADCGS_##type, 1, offsetof(current, name), min, max},
+#define FIELDS(type, name, count, min, max) {#name, ADCGS_##type, count, offsetof(current, name), min, max},
 
 #define DEFINE(list, structure)                                                                                  \
     static const adcgs_field *structure##_fields(size_t *n)                                                      \
     {                                                                                                            \
         typedef structure current;                                                                               \
-        static const adcgs_field fields[] = { ADCGS_LIST_##list(FIELD, FIELDS) };                                \
+        static const adcgs_field fields[] = {ADCGS_LIST_##list(FIELD, FIELDS)};                                  \
         *n = ADCGS_COUNTOF(fields);                                                                              \
         return fields;                                                                                           \
     }                                                                                                            \

@@ -35,7 +35,7 @@ static adcgs_status write_at_level(adcgs_stream *stream, adcgs_buffer *out, adcg
 /** Check each model by itself, then the consistency of the segments. Derives the stream's time range. */
 static adcgs_status check_stream(adcgs_stream *stream, adcgs_error *error)
 {
-    int64_t span[2] = { 0, 0 };
+    int64_t span[2] = {0, 0};
     if (stream->n_segments < 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: no segments, expected at least one");
     ADCGS_TRY(adcgs_writer_check_head(stream, error));

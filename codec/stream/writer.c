@@ -68,7 +68,7 @@ static void assign_ids(adcgs_writer *w, const adcgs_model *before, const adcgs_m
 /** Add the cost of a segment's tiers; a predicted segment has one. Networks count once. */
 static void spend_tiers(adcgs_writer *w, const adcgs_model *model)
 {
-    adcgs_nets_cost nets = { 0, 0 };
+    adcgs_nets_cost nets = {0, 0};
     for (int role = 0; role < ADCGS_ROLES; role++)
         if (model->net[role].present)
             adcgs_nets_cost_add(&nets, &model->params, role, &model->net[role]);
@@ -88,8 +88,8 @@ static adcgs_status check_segment(adcgs_writer *w, const adcgs_model *before, co
     const adcgs_level *limits = w->limits;
     spend_tiers(w, model);
     w->spent.work += before ? adcgs_inter_work(adcgs_inter_values(before)) : 0;
-    if (w->spent.bytes > limits->model_bytes || w->spent.work > limits->work || w->weights > limits->weights
-        || model->depth > limits->depth || w->n_nets > limits->networks)
+    if (w->spent.bytes > limits->model_bytes || w->spent.work > limits->work || w->weights > limits->weights ||
+        model->depth > limits->depth || w->n_nets > limits->networks)
         return adcgs_fail(w->error, ADCGS_ERR_LIMIT,
                           "stream: %llu model bytes, work %llu, %llu weights, %u networks or depth %u exceed level %u",
                           (unsigned long long)w->spent.bytes, (unsigned long long)w->spent.work, (unsigned long long)w->weights,
@@ -129,7 +129,7 @@ static adcgs_status write_layer(adcgs_writer *w, uint32_t segment, int tier, int
         adcgs_write_varint(w->out, first);
         adcgs_write_varint(w->out, n);
         for (uint32_t i = first; i < first + n; i++) {
-            const adcgs_syn_slice_crc crc = { adcgs_crc32c(0, slice, l->bytes[i]) };
+            const adcgs_syn_slice_crc crc = {adcgs_crc32c(0, slice, l->bytes[i])};
             adcgs_write_varint(w->out, l->bytes[i]);
             ADCGS_TRY(adcgs_syn_slice_crc_write(w->out, "FEA", &crc, w->error));
             slice += l->bytes[i];
@@ -143,7 +143,7 @@ static adcgs_status write_layer(adcgs_writer *w, uint32_t segment, int tier, int
 
 static adcgs_status write_layers(adcgs_writer *w, uint32_t segment, int tier, const adcgs_latents *latents, adcgs_model *model)
 {
-    layer_data l = { .n_slices = ((model->n - 1) >> w->stream->slice_log2) + 1 };
+    layer_data l = {.n_slices = ((model->n - 1) >> w->stream->slice_log2) + 1};
     adcgs_status status = ADCGS_OK;
     adcgs_buffer_init(&l.data);
     l.bytes = adcgs_alloc(NULL, l.n_slices, sizeof *l.bytes, w->error);
@@ -228,8 +228,8 @@ static adcgs_status write_rest(adcgs_writer *w, uint32_t segment, const adcgs_in
     adcgs_status status = adcgs_inter_rest(&rest, kept, before, model, w->error);
     for (uint32_t i = 0; status == ADCGS_OK && i < rest.n; i++)
         if (rest.tier[i])
-            status = adcgs_fail(w->error, ADCGS_ERR_USAGE, "stream: a new anchor of segment %u is of tier %u", segment,
-                                rest.tier[i]);
+            status =
+                adcgs_fail(w->error, ADCGS_ERR_USAGE, "stream: a new anchor of segment %u is of tier %u", segment, rest.tier[i]);
     if (status == ADCGS_OK)
         status = write_anchors(w, segment, 0, &rest);
     adcgs_model_clear(&rest, NULL);
@@ -238,7 +238,7 @@ static adcgs_status write_rest(adcgs_writer *w, uint32_t segment, const adcgs_in
 
 static adcgs_status write_predicted(adcgs_writer *w, uint32_t segment, const adcgs_model *before, const adcgs_model *model)
 {
-    adcgs_inter kept = { .n = 0 };
+    adcgs_inter kept = {.n = 0};
     adcgs_status status = adcgs_inter_find(&kept, before, model, w->error);
     if (status == ADCGS_OK)
         status = write_rest(w, segment, &kept, before, model);
@@ -264,7 +264,7 @@ static adcgs_status index_last(adcgs_writer *w)
 static adcgs_status write_parts(adcgs_writer *w, const adcgs_model *before, adcgs_model *model)
 {
     const uint32_t segment = w->n_segments;
-    adcgs_role_ids ids = { 0 };
+    adcgs_role_ids ids = {0};
     assign_ids(w, before, model, &ids);
     ADCGS_TRY(check_segment(w, before, model));
     const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_SEGM, segment, before ? 0 : ADCGS_CHUNK_KEY);
@@ -278,7 +278,7 @@ static adcgs_status write_parts(adcgs_writer *w, const adcgs_model *before, adcg
 adcgs_status adcgs_writer_segment(adcgs_writer *w, const adcgs_model *before, adcgs_model *model)
 {
     ADCGS_TRY(index_last(w));
-    w->last = (adcgs_syn_index){ .offset = position(w), .key = !before };
+    w->last = (adcgs_syn_index){.offset = position(w), .key = !before};
     ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_start, &w->last.start_ticks, w->error));
     ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_end, &w->last.end_ticks, w->error));
     ADCGS_TRY(adcgs_reach_ticks(w->stream, model, &w->last.reach_ticks, w->error));
@@ -302,7 +302,7 @@ static adcgs_status write_index(adcgs_writer *w)
 static adcgs_status write_end(adcgs_writer *w)
 {
     const uint64_t total = position(w) + ADCGS_CHUNK_BYTES + ENDC_PAYLOAD;
-    const adcgs_syn_endc endc = { .file_bytes = total, .crc_of_crcs = w->crc_of_crcs };
+    const adcgs_syn_endc endc = {.file_bytes = total, .crc_of_crcs = w->crc_of_crcs};
     if (total > w->limits->file_bytes)
         return adcgs_fail(w->error, ADCGS_ERR_LIMIT, "stream: %llu bytes exceed level %u", (unsigned long long)total,
                           w->stream->level);
@@ -329,8 +329,12 @@ adcgs_status adcgs_writer_end(adcgs_writer *w)
 
 void adcgs_writer_init(adcgs_writer *w, adcgs_stream *stream, uint32_t max_anchors, adcgs_buffer *out, adcgs_error *error)
 {
-    *w = (adcgs_writer){ .stream = stream, .max_anchors = max_anchors, .out = out, .begin = out->size,
-                         .limits = adcgs_level_get(stream->level), .error = error };
+    *w = (adcgs_writer){.stream = stream,
+                        .max_anchors = max_anchors,
+                        .out = out,
+                        .begin = out->size,
+                        .limits = adcgs_level_get(stream->level),
+                        .error = error};
     memset(&stream->bytes, 0, sizeof stream->bytes);
     adcgs_buffer_init(&w->index);
 }

@@ -6,19 +6,19 @@
 #include "stream/parts.h"
 
 typedef struct adcgs_writer {
-    adcgs_stream *stream;   /**< properties of all segments; receives bytes and weights */
-    uint32_t max_anchors;   /**< maximum over the segments */
+    adcgs_stream *stream; /**< properties of all segments; receives bytes and weights */
+    uint32_t max_anchors; /**< maximum over the segments */
     adcgs_buffer *out;
-    size_t begin;           /**< position in out at which the stream's bytes begin */
-    uint64_t gone;          /**< bytes of the stream before begin */
+    size_t begin;  /**< position in out at which the stream's bytes begin */
+    uint64_t gone; /**< bytes of the stream before begin */
     const adcgs_level *limits;
     uint32_t crc_of_crcs;
-    uint32_t n_nets;        /**< written so far */
+    uint32_t n_nets; /**< written so far */
     uint64_t weights;
-    adcgs_cost spent;       /**< used model bytes and work of the level */
-    uint32_t n_segments;    /**< written so far */
-    adcgs_syn_index last;   /**< the last segment written, without its bytes */
-    adcgs_buffer index;     /**< payload of INDX for the segments before it, without the count */
+    adcgs_cost spent;     /**< used model bytes and work of the level */
+    uint32_t n_segments;  /**< written so far */
+    adcgs_syn_index last; /**< the last segment written, without its bytes */
+    adcgs_buffer index;   /**< payload of INDX for the segments before it, without the count */
     adcgs_error *error;
 } adcgs_writer;
 

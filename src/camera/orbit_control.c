@@ -10,9 +10,9 @@
 #include <math.h>
 
 #define HALF_TURN 3.141592653589793
-#define POLE 0.01          /* smallest angle [radians] between the view and up or down */
-#define NEAREST 1e-3       /* smallest depth of the target [scene units] */
-#define FARTHEST 1e5       /* largest distance from the centre [scene units], far below the limit of a view */
+#define POLE 0.01     /* smallest angle [radians] between the view and up or down */
+#define NEAREST 1e-3  /* smallest depth of the target [scene units] */
+#define FARTHEST 1e5  /* largest distance from the centre [scene units], far below the limit of a view */
 #define ZOOM_STEP 0.9 /* factor of the target's depth per step */
 
 /** A column of the matrix: 0 right, 1 down, 2 forward, 3 position. */

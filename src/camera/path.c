@@ -35,7 +35,7 @@ adcgs_status adcgs_camera_path_check_times(const adcgs_info *info, const adcgs_c
     if (request->has_times && is_outside(info, request->begin, request->end))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %g%s: the stream lasts from %g to %g s",
                           request->begin > info->time_end ? request->begin : request->end,
-                          request->begin == request->end     ? ""
+                          request->begin == request->end    ? ""
                           : request->begin > info->time_end ? " and later"
                                                             : " and earlier",
                           info->time_start, info->time_end);
@@ -74,7 +74,7 @@ static adcgs_status find_stored(const adcgs_decoder *decoder, const adcgs_info *
 }
 
 adcgs_status adcgs_camera_path_times(adcgs_camera_path *out, const adcgs_info *info, const adcgs_camera_path_request *request,
-                               adcgs_camera_path_motion motion, adcgs_error *error)
+                                     adcgs_camera_path_motion motion, adcgs_error *error)
 {
     const double begin = request->has_times ? request->begin : info->time_start;
     const double end = request->has_times ? request->end : info->time_end;
@@ -92,7 +92,7 @@ adcgs_status adcgs_camera_path_times(adcgs_camera_path *out, const adcgs_info *i
 
 #ifndef HAVE_ENCODER
 adcgs_status adcgs_camera_path_read(adcgs_camera_path *out, const adcgs_info *info, const adcgs_camera_path_request *request,
-                                   const adcgs_camera *like, adcgs_error *error)
+                                    const adcgs_camera *like, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads no camera paths", request->camera);
 }

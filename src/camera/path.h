@@ -33,13 +33,13 @@ typedef enum adcgs_rotation_order {
 extern const char *const adcgs_rotation_orders[];
 
 typedef struct adcgs_camera_path_request {
-    const char *camera; /**< name or index of a stored camera, orbit, spiral, bullet, or the file of a path; NULL: 0, else
+    const char *camera;         /**< name or index of a stored camera, orbit, spiral, bullet, or the file of a path; NULL: 0, else
                              orbit */
     adcgs_rotation_order order; /**< of the angles in a .chan file */
     int has_times;
-    double begin, end;  /**< seconds; by default the stream's whole span */
-    int size[2];        /**< 0, 0: the camera's own; else its view is fitted to it by adcgs_camera_fit() */
-    int fill;           /**< parameter of adcgs_camera_fit() */
+    double begin, end; /**< seconds; by default the stream's whole span */
+    int size[2];       /**< 0, 0: the camera's own; else its view is fitted to it by adcgs_camera_fit() */
+    int fill;          /**< parameter of adcgs_camera_fit() */
 } adcgs_camera_path_request;
 
 /** ADCGS_ERR_USAGE if times are given and none of them is in the stream. */
@@ -72,10 +72,10 @@ adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const adcgs_c
 
 /* The declarations below are for the files of this part only. */
 #define ADCGS_PATH_FRAMES_MAX 1000000 /**< frames of a path */
-#define ADCGS_ORBIT_WIDTH 800 /**< image width of cameras without one, pixels */
-#define ADCGS_ORBIT_HEIGHT 600 /**< image height of cameras without one, pixels */
-#define ADCGS_NEAR_PER_SCALE 0.01 /* near plane of cameras without one, per scene unit */
-#define ADCGS_PATH_SECONDS 4.0 /* duration of a path around a static scene */
+#define ADCGS_ORBIT_WIDTH 800         /**< image width of cameras without one, pixels */
+#define ADCGS_ORBIT_HEIGHT 600        /**< image height of cameras without one, pixels */
+#define ADCGS_NEAR_PER_SCALE 0.01     /* near plane of cameras without one, per scene unit */
+#define ADCGS_PATH_SECONDS 4.0        /* duration of a path around a static scene */
 
 /** who: source of the number n in messages, a file; NULL: the user, for a usage error. */
 adcgs_status adcgs_camera_path_alloc(adcgs_camera_path *frames, double n, const char *who, adcgs_error *error);
@@ -88,7 +88,7 @@ typedef enum adcgs_camera_path_motion {
 
 /** Frames with times only, at the stream's frame rate, both ends included; a static scene lasts ADCGS_PATH_SECONDS. */
 adcgs_status adcgs_camera_path_times(adcgs_camera_path *out, const adcgs_info *info, const adcgs_camera_path_request *request,
-                               adcgs_camera_path_motion motion, adcgs_error *error);
+                                     adcgs_camera_path_motion motion, adcgs_error *error);
 /** A camera for a stream without any; up: that of the stream, of length 1. */
 void adcgs_camera_path_default(adcgs_camera *camera, const adcgs_info *info, const double up[3]);
 

@@ -15,7 +15,7 @@
 
 #define BLANKS " \t\r,"
 #define BYTES_MAX ((uint64_t)256 << 20) /* of a file */
-#define VALUE_MAX 1e9 /* largest absolute value of a number */
+#define VALUE_MAX 1e9                   /* largest absolute value of a number */
 #define DEGREE 0.017453292519943295
 
 enum { FRAME, PLACE, ANGLES = 4, VIEW = 7, COLUMNS };
@@ -116,8 +116,8 @@ adcgs_status adcgs_path_chan_read(adcgs_camera_path *out, const adcgs_path_reade
     else if (memchr(data, 0, bytes))
         status = adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: not a text", r->path);
     else if (lines > ADCGS_PATH_FRAMES_MAX)
-        status = adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %zu lines, expected at most %d", r->path, lines,
-                            ADCGS_PATH_FRAMES_MAX);
+        status =
+            adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %zu lines, expected at most %d", r->path, lines, ADCGS_PATH_FRAMES_MAX);
     else
         status = read_frames(out, r, (char *)data, keys);
     free(keys);

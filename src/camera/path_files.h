@@ -7,7 +7,7 @@
 
 /** Input of a path's reader. */
 typedef struct adcgs_path_reader {
-    const char *path;                         /**< of the file */
+    const char *path; /**< of the file */
     const adcgs_info *info;
     const adcgs_camera_path_request *request; /**< with at most one time */
     const adcgs_camera *like;                 /**< values missing in the file: of a stored camera, or a default one */

@@ -8,9 +8,9 @@
 
 #include <stdlib.h>
 
-#define ORBIT_DISTANCE 2.5 /* scene units */
+#define ORBIT_DISTANCE 2.5   /* scene units */
 #define ORBIT_ELEVATION 0.35 /* radians */
-#define ORBIT_FOCAL 1.2    /* focal length per image width */
+#define ORBIT_FOCAL 1.2      /* focal length per image width */
 
 adcgs_status adcgs_camera_path_alloc(adcgs_camera_path *frames, double n, const char *who, adcgs_error *error)
 {

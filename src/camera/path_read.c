@@ -52,8 +52,7 @@ static adcgs_status enter(reader *r, json_t *list, size_t i)
 /** Check for one size; sizes may differ only with --size, which fits them. */
 static adcgs_status check_size(const reader *r, const adcgs_camera_frame *frame, const adcgs_camera_frame *first)
 {
-    if (!r->request->size[0] &&
-        (frame->camera.width != first->camera.width || frame->camera.height != first->camera.height))
+    if (!r->request->size[0] && (frame->camera.width != first->camera.width || frame->camera.height != first->camera.height))
         return adcgs_json_bad(&r->at, ADCGS_ERR_DATA, "w", "%s of one path must have one size; or use --size", r->at.list);
     return ADCGS_OK;
 }

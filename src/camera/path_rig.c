@@ -12,8 +12,8 @@
 
 #define FULL_TURN 6.283185307179586
 #define SPIRAL_TURNS 2.0
-#define SPIRAL_LEAST 0.1 /* radius over the distance to the focus, for cameras without a spread of their own */
-#define SPIRAL_MOST 0.5 /* upper bound of the radius over the distance to the focus */
+#define SPIRAL_LEAST 0.1  /* radius over the distance to the focus, for cameras without a spread of their own */
+#define SPIRAL_MOST 0.5   /* upper bound of the radius over the distance to the focus */
 #define LOOK_TOGETHER 0.5 /* smallest length of the mean viewing direction for which cameras have a mean pose */
 #define RING_GAP 2.0      /* largest gap within a closed ring, in mean gaps */
 
@@ -194,8 +194,7 @@ adcgs_status adcgs_rig_bullet(const adcgs_rig *rig, adcgs_camera_path *frames, a
     place *places = malloc((size_t)rig->n * sizeof *places);
     adcgs_camera_key *keys = malloc(((size_t)rig->n + 1) * sizeof *keys);
     adcgs_camera_spline spline = {0};
-    adcgs_status status = places && keys ? ADCGS_OK
-                                         : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %d cameras", rig->n);
+    adcgs_status status = places && keys ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %d cameras", rig->n);
     if (status == ADCGS_OK) {
         const int closed = order_places(rig, places) <= RING_GAP * FULL_TURN / rig->n;
         const int n = make_keys(rig, places, closed, keys);

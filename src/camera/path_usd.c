@@ -18,14 +18,25 @@
 #define FOCAL 50.0
 #define CODES_A_SECOND 24.0
 #define WRITTEN_APERTURE 36.0 /* horizontal aperture in written files */
-#define FAR_PLANE 1e6 /* in written files, world units */
+#define FAR_PLANE 1e6         /* in written files, world units */
 #define OP "xformOp:"
 
 static int is_wanted(const char *name)
 {
-    static const char *const names[] = {"focalLength", "horizontalAperture", "verticalAperture", "horizontalApertureOffset",
-                                        "verticalApertureOffset", "clippingRange", "projection", "xformOpOrder", "adcgs:size",
-                                        "adcgs:time", "startTimeCode", "endTimeCode", "timeCodesPerSecond", "framesPerSecond"};
+    static const char *const names[] = {"focalLength",
+                                        "horizontalAperture",
+                                        "verticalAperture",
+                                        "horizontalApertureOffset",
+                                        "verticalApertureOffset",
+                                        "clippingRange",
+                                        "projection",
+                                        "xformOpOrder",
+                                        "adcgs:size",
+                                        "adcgs:time",
+                                        "startTimeCode",
+                                        "endTimeCode",
+                                        "timeCodesPerSecond",
+                                        "framesPerSecond"};
     for (size_t i = 0; i < ADCGS_COUNTOF(names); i++)
         if (!strcmp(name, names[i]))
             return 1;

@@ -79,7 +79,7 @@ static void make_end_rates(adcgs_knot *knots, int n)
 }
 
 adcgs_status adcgs_camera_spline_init(adcgs_camera_spline *spline, const adcgs_camera_key *keys, int n, int linear, int closed,
-                               adcgs_error *error)
+                                      adcgs_error *error)
 {
     *spline = (adcgs_camera_spline){.n = n, .linear = linear, .camera = keys[0].frame.camera};
     adcgs_knot *knots = malloc((size_t)n * sizeof *knots);

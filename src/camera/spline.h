@@ -32,7 +32,7 @@ typedef struct adcgs_camera_spline {
  * ADCGS_ERR_MEMORY is the only failure. Call adcgs_camera_spline_clear() afterwards.
  */
 adcgs_status adcgs_camera_spline_init(adcgs_camera_spline *spline, const adcgs_camera_key *keys, int n, int linear, int closed,
-                               adcgs_error *error);
+                                      adcgs_error *error);
 /** The frame at a position, which is clamped to the first and last key. */
 void adcgs_camera_spline_at(const adcgs_camera_spline *spline, double at, adcgs_camera_frame *frame);
 void adcgs_camera_spline_clear(adcgs_camera_spline *spline);

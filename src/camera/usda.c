@@ -11,8 +11,8 @@
 #include <stdlib.h>
 
 #define BYTES_MAX ((uint64_t)256 << 20) /* of a file */
-#define DEPTH_MAX 64 /* nested prims */
-#define SAMPLES_MAX 1000000 /* of a property */
+#define DEPTH_MAX 64                    /* nested prims */
+#define SAMPLES_MAX 1000000             /* of a property */
 #define NAME_MAX_BYTES 200
 
 typedef struct parser {

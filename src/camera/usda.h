@@ -18,11 +18,11 @@ typedef struct adcgs_usda_sample {
 
 typedef struct adcgs_usda_property {
     char *name;
-    int prim;                 /**< owner */
-    int n;                    /**< numbers per value; 0: the property is text */
-    int n_samples, is_fixed;  /**< samples in order of time; fixed: a single one without a time */
+    int prim;                /**< owner */
+    int n;                   /**< numbers per value; 0: the property is text */
+    int n_samples, is_fixed; /**< samples in order of time; fixed: a single one without a time */
     adcgs_usda_sample *samples;
-    char *text;               /**< the text, or the texts of an array, each ended by a line feed */
+    char *text; /**< the text, or the texts of an array, each ended by a line feed */
 } adcgs_usda_property;
 
 typedef struct adcgs_usda_prim {

@@ -20,8 +20,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define OPTIONS_MAX 64 /* of a program */
-#define HELP_COLUMN 28 /* column of the options' descriptions */
+#define OPTIONS_MAX 64   /* of a program */
+#define HELP_COLUMN 28   /* column of the options' descriptions */
 #define MESSAGE_MAX 8192 /* bytes of a message */
 
 static void message(const adcgs_cli *cli, const char *format, va_list arguments) ADCGS_PRINTF(2, 0);
@@ -128,8 +128,8 @@ static void describe(const adcgs_option *option, char *text, size_t size)
                  option->max >= 1000 ? ", suffix k or M allowed" : "");
         break;
     case ADCGS_OPTION_SIZE:
-        snprintf(text, size, "a whole number from %.0f to %.0f, suffix k, M, G, KiB, MiB or GiB allowed",
-                 option->min, option->max);
+        snprintf(text, size, "a whole number from %.0f to %.0f, suffix k, M, G, KiB, MiB or GiB allowed", option->min,
+                 option->max);
         break;
     case ADCGS_OPTION_REAL:
         snprintf(text, size, "a number from %g to %g", option->min, option->max);

@@ -12,29 +12,29 @@
 #include <stdio.h>
 
 typedef enum adcgs_option_kind {
-    ADCGS_OPTION_FLAG,   /**< target: int, set to 1 */
-    ADCGS_OPTION_STRING, /**< target: const char * */
-    ADCGS_OPTION_FILE,   /**< as STRING: the name of a file or folder */
-    ADCGS_OPTION_INT,    /**< target: int; suffixes k and M are powers of 1000 */
-    ADCGS_OPTION_SIZE,   /**< target: uint64_t; suffixes k, M, G are powers of 1000, KiB, MiB, GiB of 1024 */
-    ADCGS_OPTION_REAL,   /**< target: double */
+    ADCGS_OPTION_FLAG,    /**< target: int, set to 1 */
+    ADCGS_OPTION_STRING,  /**< target: const char * */
+    ADCGS_OPTION_FILE,    /**< as STRING: the name of a file or folder */
+    ADCGS_OPTION_INT,     /**< target: int; suffixes k and M are powers of 1000 */
+    ADCGS_OPTION_SIZE,    /**< target: uint64_t; suffixes k, M, G are powers of 1000, KiB, MiB, GiB of 1024 */
+    ADCGS_OPTION_REAL,    /**< target: double */
     ADCGS_OPTION_SECONDS, /**< target: double; suffixes ms, s, m, min and h */
-    ADCGS_OPTION_PAIR,   /**< target: int[2]; WIDTHxHEIGHT */
-    ADCGS_OPTION_CHOICE, /**< target: int, index into choices */
-    ADCGS_OPTION_FORMER  /**< former name of the option called `value`, accepted with a remark; not listed */
+    ADCGS_OPTION_PAIR,    /**< target: int[2]; WIDTHxHEIGHT */
+    ADCGS_OPTION_CHOICE,  /**< target: int, index into choices */
+    ADCGS_OPTION_FORMER   /**< former name of the option called `value`, accepted with a remark; not listed */
 } adcgs_option_kind;
 
 /** One option. A target keeps its value if the option is not given, so defaults are set there. */
 typedef struct adcgs_option {
-    const char *name;   /**< long name without dashes */
-    char letter;        /**< short name, 0: none */
+    const char *name; /**< long name without dashes */
+    char letter;      /**< short name, 0: none */
     adcgs_option_kind kind;
     void *target;
-    double min, max;    /**< inclusive range of INT, SIZE, REAL, SECONDS and PAIR */
-    const char *value;  /**< name of the value in the help; NULL for a FLAG */
-    const char *help;   /**< one sentence without full stop; '\n' continues on the next line */
+    double min, max;            /**< inclusive range of INT, SIZE, REAL, SECONDS and PAIR */
+    const char *value;          /**< name of the value in the help; NULL for a FLAG */
+    const char *help;           /**< one sentence without full stop; '\n' continues on the next line */
     const char *const *choices; /**< names of a CHOICE, ended by NULL; words of a STRING or FILE, for completion alone */
-    int *given;         /**< set to 1 when the option is given; may be NULL */
+    int *given;                 /**< set to 1 when the option is given; may be NULL */
 } adcgs_option;
 
 /**
@@ -109,9 +109,9 @@ int adcgs_interrupts(void);
 typedef struct adcgs_progress {
     const adcgs_cli *cli;
     int is_terminal, shown;
-    double last;  /**< time of the last line */
-    double every; /**< seconds between two lines */
-    double grace; /**< seconds that adcgs_progress_keep() waits for a line from the program */
+    double last;    /**< time of the last line */
+    double every;   /**< seconds between two lines */
+    double grace;   /**< seconds that adcgs_progress_keep() waits for a line from the program */
     char said[256]; /**< the last text given, shown or not; "": none valid */
     double said_at;
     struct adcgs_pulse *pulse; /**< NULL without adcgs_progress_keep() */

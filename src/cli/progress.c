@@ -18,9 +18,9 @@
 #include <unistd.h>
 
 #define TERMINAL_EVERY 0.1 /* seconds between two updates on a terminal */
-#define LINES_FIRST 5.0 /* seconds to the first line without a terminal; each further interval is doubled */
-#define LINES_MOST 25.0 /* upper bound of the seconds between two lines */
-#define PULSE_AFTER 5.0 /* seconds that a due line is left to the program, whose text is newer */
+#define LINES_FIRST 5.0    /* seconds to the first line without a terminal; each further interval is doubled */
+#define LINES_MOST 25.0    /* upper bound of the seconds between two lines */
+#define PULSE_AFTER 5.0    /* seconds that a due line is left to the program, whose text is newer */
 
 /** A thread that repeats the last line. */
 struct adcgs_pulse {
@@ -46,7 +46,10 @@ static void unlock(const adcgs_progress *p)
 void adcgs_progress_init(adcgs_progress *progress, const adcgs_cli *cli)
 {
     const int is_terminal = isatty(STDERR_FILENO);
-    *progress = (adcgs_progress){.cli = cli, .is_terminal = is_terminal, .last = adcgs_seconds(), .grace = PULSE_AFTER,
+    *progress = (adcgs_progress){.cli = cli,
+                                 .is_terminal = is_terminal,
+                                 .last = adcgs_seconds(),
+                                 .grace = PULSE_AFTER,
                                  .every = is_terminal ? TERMINAL_EVERY : LINES_FIRST};
 }
 

@@ -45,11 +45,11 @@ char *adcgs_text_utf8(const char *text)
 static int is_shown(uint32_t code)
 {
     static const uint32_t hidden[][2] = {
-        {0, 0x1f},          {0x7f, 0x9f},       /* C0, DEL and C1 */
-        {0x061c, 0x061c},   {0x200e, 0x200f},   {0x202a, 0x202e}, {0x2066, 0x2069}, /* direction of text */
-        {0x2028, 0x2029},                       /* separators of lines and paragraphs */
-        {0x206a, 0x206f},   {0xfeff, 0xfeff},   /* deprecated formatting, byte order mark */
-        {0xfff9, 0xfffb},   {0xe0000, 0xe007f}, /* annotations, tags */
+        {0, 0x1f},        {0x7f, 0x9f},                                           /* C0, DEL and C1 */
+        {0x061c, 0x061c}, {0x200e, 0x200f},   {0x202a, 0x202e}, {0x2066, 0x2069}, /* direction of text */
+        {0x2028, 0x2029},                                                         /* separators of lines and paragraphs */
+        {0x206a, 0x206f}, {0xfeff, 0xfeff},                                       /* deprecated formatting, byte order mark */
+        {0xfff9, 0xfffb}, {0xe0000, 0xe007f},                                     /* annotations, tags */
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(hidden); i++)
         if (code >= hidden[i][0] && code <= hidden[i][1])

@@ -20,7 +20,7 @@
 #define ADCGS_VECTOR_LAYERS 4
 #define ADCGS_HEX 33
 #define ADCGS_REFUSED "refused" /**< replaces a frame's digest if its camera is refused */
-#define ADCGS_WHAT 400 /**< bytes of an explanation */
+#define ADCGS_WHAT 400          /**< bytes of an explanation */
 
 /** Expected results of a decoder that leaves out layers. */
 typedef struct adcgs_fewer {
@@ -34,10 +34,10 @@ typedef struct adcgs_fewer {
 
 typedef struct adcgs_vector {
     char id[80], file[128], title[256];
-    char md5[ADCGS_HEX];       /**< of the file */
-    adcgs_status status;       /**< ADCGS_OK for a good vector, else the status with which decoding has to end */
+    char md5[ADCGS_HEX]; /**< of the file */
+    adcgs_status status; /**< ADCGS_OK for a good vector, else the status with which decoding has to end */
     int level, truncated;
-    uint32_t elements;         /**< lines of the trace */
+    uint32_t elements; /**< lines of the trace */
     char trace[ADCGS_HEX];
     int n_models, n_cameras, n_splats, n_frames;
     char models[ADCGS_VECTOR_MODELS][ADCGS_HEX];
@@ -113,7 +113,7 @@ void adcgs_selftest_program(const adcgs_manifest *manifest, int *runs, int *faul
 /** Results as JUnit XML. */
 typedef struct adcgs_junit {
     adcgs_atomic atomic; /**< the report */
-    char *cases; /**< test cases so far */
+    char *cases;         /**< test cases so far */
     size_t bytes;
     FILE *memory;
     int n, failures, errors;

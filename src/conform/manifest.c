@@ -13,7 +13,9 @@
 static const struct {
     const char *name;
     adcgs_status status;
-} classes[] = {{"data", ADCGS_ERR_DATA}, {"truncated", ADCGS_ERR_TRUNCATED}, {"unsupported", ADCGS_ERR_UNSUPPORTED},
+} classes[] = {{"data", ADCGS_ERR_DATA},
+               {"truncated", ADCGS_ERR_TRUNCATED},
+               {"unsupported", ADCGS_ERR_UNSUPPORTED},
                {"limit", ADCGS_ERR_LIMIT}};
 
 int adcgs_vector_class(const char *name, adcgs_status *status)

@@ -19,9 +19,9 @@
 typedef struct run {
     char in[4096], request[64], out[64];
     char *command;
-    char *answers;   /**< the program's output */
+    char *answers; /**< the program's output */
     size_t bytes;
-    int status;      /**< from waitpid() */
+    int status; /**< from waitpid() */
     int timed_out;
     char *what;
 } run;

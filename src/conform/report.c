@@ -68,8 +68,7 @@ adcgs_status adcgs_junit_close(adcgs_junit *junit, adcgs_error *error)
     junit->memory = NULL;
     fprintf(file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     fprintf(file, "<testsuite name=\"adcgs-conform\" tests=\"%d\" failures=\"%d\"", junit->n, junit->failures);
-    fprintf(file, " errors=\"%d\" time=\"%.3f\">\n%s</testsuite>\n", junit->errors, junit->seconds,
-            complete ? junit->cases : "");
+    fprintf(file, " errors=\"%d\" time=\"%.3f\">\n%s</testsuite>\n", junit->errors, junit->seconds, complete ? junit->cases : "");
     free(junit->cases);
     if (complete)
         return adcgs_atomic_commit(&junit->atomic, error);

@@ -119,9 +119,9 @@ typedef struct model {
 } model;
 
 static const model models[] = {
-    {"OPENCV", 4, 2, 0},        {"OPENCV_FISHEYE", 4, 0, 1},        {"PINHOLE", 0, 0, 0},
+    {"OPENCV", 4, 2, 0},         {"OPENCV_FISHEYE", 4, 0, 1},        {"PINHOLE", 0, 0, 0},
     {"SIMPLE_PINHOLE", 0, 0, 0}, {"SIMPLE_RADIAL", 1, 0, 0},         {"RADIAL", 2, 0, 0},
-    {"FULL_OPENCV", 6, 2, 0},   {"SIMPLE_RADIAL_FISHEYE", 1, 0, 1}, {"RADIAL_FISHEYE", 2, 0, 1},
+    {"FULL_OPENCV", 6, 2, 0},    {"SIMPLE_RADIAL_FISHEYE", 1, 0, 1}, {"RADIAL_FISHEYE", 2, 0, 1},
 };
 
 /** Without a name: the first model, or the second if the file sets is_fisheye. */
@@ -139,8 +139,10 @@ static adcgs_status find_model(const adcgs_json_place *at, const model **out)
                 return adcgs_json_bad(at, ADCGS_ERR_DATA, "is_fisheye", "true, but camera_model is %s", name);
             return ADCGS_OK;
         }
-    return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "camera_model", "%.32s is not supported, expected PINHOLE, SIMPLE_RADIAL, "
-                          "RADIAL, OPENCV, FULL_OPENCV or OPENCV_FISHEYE", name);
+    return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "camera_model",
+                          "%.32s is not supported, expected PINHOLE, SIMPLE_RADIAL, "
+                          "RADIAL, OPENCV, FULL_OPENCV or OPENCV_FISHEYE",
+                          name);
 }
 
 /** Refuses instant-ngp's fields for other projections, and skew, which has no agreed meaning here. */
@@ -262,8 +264,14 @@ adcgs_status adcgs_json_lens(const adcgs_json_place *at, adcgs_lens *lens)
     if (its->is_fisheye && !adcgs_json_find(at, "fl_x"))
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "fl_x", "missing: a fisheye lens needs fl_x, its field of view is not enough");
     ADCGS_TRY(read_pinhole(at, &camera));
-    *lens = (adcgs_lens){.width = camera.width, .height = camera.height, .fx = camera.fx, .fy = camera.fy, .cx = camera.cx,
-                         .cy = camera.cy, .p = {values[6], values[7]}, .is_fisheye = its->is_fisheye};
+    *lens = (adcgs_lens){.width = camera.width,
+                         .height = camera.height,
+                         .fx = camera.fx,
+                         .fy = camera.fy,
+                         .cx = camera.cx,
+                         .cy = camera.cy,
+                         .p = {values[6], values[7]},
+                         .is_fisheye = its->is_fisheye};
     memcpy(lens->k, values, sizeof lens->k);
     if (its == &models[0]) { /* nerfstudio's polynomial */
         lens->k8 = lens->k[3];

@@ -12,7 +12,7 @@ typedef struct clip {
     adcgs_video *video;   /* NULL until it is opened, or if opening failed */
     pthread_mutex_t lock; /* protects video */
     int users;
-    uint64_t used;        /* number of the call that used it last */
+    uint64_t used; /* number of the call that used it last */
 } clip;
 
 struct adcgs_clips {

@@ -68,9 +68,9 @@ static void add_view(adcgs_md5 *md5, const adcgs_scene_view *v)
 {
     const adcgs_camera *c = &v->camera;
     const adcgs_lens *l = &v->lens;
-    const double numbers[] = { v->time, (double)v->frame, v->is_video, v->mask != NULL, c->width, c->height, c->fx, c->fy, c->cx,
-                               c->cy, c->near_plane, l->width, l->height, l->fx, l->fy, l->cx, l->cy, l->skew, l->k8, l->p[0],
-                               l->p[1], l->is_fisheye };
+    const double numbers[] = {v->time, (double)v->frame, v->is_video, v->mask != NULL, c->width, c->height, c->fx, c->fy, c->cx,
+                              c->cy,   c->near_plane,    l->width,    l->height,       l->fx,    l->fy,     l->cx, l->cy, l->skew,
+                              l->k8,   l->p[0],          l->p[1],     l->is_fisheye};
     add_numbers(md5, numbers, ADCGS_COUNTOF(numbers));
     add_numbers(md5, l->k, ADCGS_COUNTOF(l->k));
     add_numbers(md5, c->cam_to_world, ADCGS_COUNTOF(c->cam_to_world));
@@ -88,8 +88,9 @@ void adcgs_scene_outline(const adcgs_scene *scene, uint8_t digest[ADCGS_CONTENT_
 {
     adcgs_md5 md5;
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
-    const double facts[] = { n, scene->duration, (double)scene->rate.num, (double)scene->rate.den, scene->n_times,
-                             scene->splats != NULL, scene->axes, scene->units, scene->colour_space, scene->points.n };
+    const double facts[] =
+        {n,           scene->duration, (double)scene->rate.num, (double)scene->rate.den, scene->n_times, scene->splats != NULL,
+         scene->axes, scene->units,    scene->colour_space,     scene->points.n};
     adcgs_md5_init(&md5);
     add_numbers(&md5, facts, ADCGS_COUNTOF(facts));
     for (uint32_t i = 0; i < n; i++)

@@ -13,10 +13,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define CAMERAS 3   /* least number of cameras: of two that differ, either may be wrong */
+#define CAMERAS 3      /* least number of cameras: of two that differ, either may be wrong */
 #define CHANGES_MIN 12 /* least number of changes in common, at any shift */
-#define STRONG 4    /* least number of strong changes: a camera may simply have seen a single event later */
-#define REACH 2     /* changes to either side; their median is the smooth part */
+#define STRONG 4       /* least number of strong changes: a camera may simply have seen a single event later */
+#define REACH 2        /* changes to either side; their median is the smooth part */
 /*
  * Correlations with the mean of the other cameras. They were tested on 32 generated scenes filmed by four correct cameras, and
  * on rigs of 4, 8 and 17 cameras. Where cameras agree by 0.8 and more (bounce, collide, merge, race, soft, clip,
@@ -24,17 +24,17 @@
  * more, and matches by 0.9. Without sudden changes cameras agree by less than 0.8, and shifts gain up to 1.4 by chance: nothing
  * is reported.
  */
-#define AGREE 0.8   /* least median correlation of the other cameras with each other */
-#define MATCH 0.7   /* least correlation of the suspected camera, at its shift */
-#define GAIN 0.4    /* least increase of this correlation by the shift */
-#define UNIQUE 0.2  /* least lead over shifts that are not adjacent: repeated motion matches at many shifts */
+#define AGREE 0.8  /* least median correlation of the other cameras with each other */
+#define MATCH 0.7  /* least correlation of the suspected camera, at its shift */
+#define GAIN 0.4   /* least increase of this correlation by the shift */
+#define UNIQUE 0.2 /* least lead over shifts that are not adjacent: repeated motion matches at many shifts */
 
 /** Changes of all cameras from frame to frame: [cameras][steps], NaN if one of the two images is missing. */
 typedef struct signals {
     uint32_t cameras, steps;
     double *values;
-    double *mean; /* [steps] over all cameras except one or two */
-    double *times; /* [steps + 1] */
+    double *mean;                   /* [steps] over all cameras except one or two */
+    double *times;                  /* [steps + 1] */
     const adcgs_scene_view **first; /* [cameras] first view of each */
 } signals;
 

@@ -9,10 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SAME 0.1     /* largest share of the copy's change from its camera's other images; re-encoding alters a copy slightly */
-#define OTHER 0.5    /* least share of that change by which the cameras' other images differ: else both see the same */
+#define SAME 0.1      /* largest share of the copy's change from its camera's other images; re-encoding alters a copy slightly */
+#define OTHER 0.5     /* least share of that change by which the cameras' other images differ: else both see the same */
 #define CONTRAST 0.25 /* least contrast, as a share of the camera's other images: dark images look alike in all cameras */
-#define FEW 3        /* least number of images of a camera; fewer are not judged */
+#define FEW 3         /* least number of images of a camera; fewer are not judged */
 
 /** A view in the order of time. */
 typedef struct capture {
@@ -49,8 +49,8 @@ static double contrast(const adcgs_thumbnail *thumbnail)
 static int is_copy(const adcgs_thumbnail *thumbnails, const capture *a, const capture *b)
 {
     const adcgs_thumbnail *const it = &thumbnails[b->view];
-    const double off = fmin(adcgs_thumbnail_difference(it, &thumbnails[b->near[0]]),
-                            adcgs_thumbnail_difference(it, &thumbnails[b->near[1]]));
+    const double off =
+        fmin(adcgs_thumbnail_difference(it, &thumbnails[b->near[0]]), adcgs_thumbnail_difference(it, &thumbnails[b->near[1]]));
     if (!(off > 0.0 && adcgs_thumbnail_difference(&thumbnails[a->view], it) <= SAME * off))
         return 0;
     for (int i = 0; i < 2; i++)
@@ -68,7 +68,9 @@ static uint32_t list_captures(capture *captures, adcgs_fault *f, const adcgs_sce
         const uint32_t *const order = tracks->order + tracks->begin[c], n = tracks->begin[c + 1] - tracks->begin[c];
         f->of += n >= FEW;
         for (uint32_t i = 0; n >= FEW && i < n; i++)
-            captures[count++] = (capture){.time = views[order[i]].time, .view = order[i], .camera = c,
+            captures[count++] = (capture){.time = views[order[i]].time,
+                                          .view = order[i],
+                                          .camera = c,
                                           .near = {order[i ? i - 1 : 1], order[i + 1 < n ? i + 1 : n - 2]}};
     }
     qsort(captures, count, sizeof *captures, by_time);

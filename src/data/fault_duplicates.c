@@ -6,11 +6,11 @@
 
 #include <math.h>
 
-#define SAME 0.1   /* largest share of the changes before and after: noise alone exceeds it, and objects stop gradually */
+#define SAME 0.1    /* largest share of the changes before and after: noise alone exceeds it, and objects stop gradually */
 #define ONWARDS 0.5 /* least share of these changes by which the images around differ: oscillating objects may pause */
 #define COPIES 2    /* most duplicates of one image: a longer pause is a real pause, or the object is hidden */
 #define PICTURES 2  /* least number of images with duplicates in a camera: one may be a moving object that is hidden briefly */
-#define FEW 6      /* least number of images of a camera; fewer are not judged */
+#define FEW 6       /* least number of images of a camera; fewer are not judged */
 
 /** Number of duplicates of image i > 0, up to the next image that differs; 0 if there are none or motion only pauses. */
 static uint32_t copies_of(const adcgs_thumbnail *thumbnails, const uint32_t *order, uint32_t n, uint32_t i)

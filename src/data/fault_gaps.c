@@ -97,8 +97,7 @@ static void look_at_cameras(adcgs_fault *f, const adcgs_scene_view *views, const
  * Looks for gaps of all cameras together. Where cameras take turns, the scene's step is shorter than a camera's step. With
  * unsynchronised clocks the scene's steps have any length, but none exceeds a camera's steps.
  */
-static void check_times(adcgs_fault *f, const adcgs_scene_view *views, uint32_t n, uint32_t cameras, space *s,
-                        double least_step)
+static void check_times(adcgs_fault *f, const adcgs_scene_view *views, uint32_t n, uint32_t cameras, space *s, double least_step)
 {
     uint32_t count, at = 0;
     double median;
@@ -111,7 +110,11 @@ static void check_times(adcgs_fault *f, const adcgs_scene_view *views, uint32_t 
     const double gap = widest(s, n, step, fmax(STEPS * step, 1.5 * least_step), &count, &at);
     if (!count)
         return;
-    *f = (adcgs_fault){.cameras = cameras, .of = cameras, .count = count, .from = s->times[at - 1], .to = s->times[at],
+    *f = (adcgs_fault){.cameras = cameras,
+                       .of = cameras,
+                       .count = count,
+                       .from = s->times[at - 1],
+                       .to = s->times[at],
                        .size = round(gap / step) - 1.0};
 }
 
@@ -164,7 +167,8 @@ adcgs_status adcgs_fault_gaps(adcgs_fault *fault, const adcgs_scene *scene, adcg
     for (int split = 0; split < ADCGS_SPLITS; split++)
         most += scene->n_views[split];
     adcgs_scene_view *const views = adcgs_alloc(NULL, most, sizeof *views, error);
-    space s = {.times = adcgs_alloc(NULL, most, sizeof *s.times, error), .steps = adcgs_alloc(NULL, most, sizeof *s.steps, error),
+    space s = {.times = adcgs_alloc(NULL, most, sizeof *s.times, error),
+               .steps = adcgs_alloc(NULL, most, sizeof *s.steps, error),
                .aside = adcgs_alloc(NULL, most, sizeof *s.aside, error)};
     *fault = (adcgs_fault){.cameras = 0};
     const int has_room = views && s.times && s.steps && s.aside;

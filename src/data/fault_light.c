@@ -9,10 +9,10 @@
 
 #include <math.h>
 
-#define STEP 0.077      /* least step: the logarithm of 1.08 */
-#define ALONE (1.0 / 3) /* largest change before and after, as a share of the step: beyond it the light changes all the time */
+#define STEP 0.077       /* least step: the logarithm of 1.08 */
+#define ALONE (1.0 / 3)  /* largest change before and after, as a share of the step: beyond it the light changes all the time */
 #define SPREAD (1.0 / 3) /* largest median deviation of an image's cells, as a share of the step: beyond it the content changes */
-#define FEW 6           /* least number of images of a camera; fewer are not judged */
+#define FEW 6            /* least number of images of a camera; fewer are not judged */
 
 typedef struct step {
     double from, to; /* times before and after the step */

@@ -11,13 +11,13 @@
 
 /** A detected fault. Times are those of the views. */
 typedef struct adcgs_fault {
-    uint32_t cameras;             /**< cameras with the fault; 0: none */
-    uint32_t of;                  /**< cameras that could be judged; 1 for one moving camera that took everything */
-    const char *path;             /**< of the view where it begins, in the worst affected camera; NULL: all cameras have it */
-    uint32_t count;               /**< occurrences in this camera */
-    double from, to;              /**< times of the worst occurrence */
-    double size;                  /**< severity of the worst occurrence; see the functions */
-    adcgs_thumbnail_light light;  /**< kind of change, for a step of light */
+    uint32_t cameras;            /**< cameras with the fault; 0: none */
+    uint32_t of;                 /**< cameras that could be judged; 1 for one moving camera that took everything */
+    const char *path;            /**< of the view where it begins, in the worst affected camera; NULL: all cameras have it */
+    uint32_t count;              /**< occurrences in this camera */
+    double from, to;             /**< times of the worst occurrence */
+    double size;                 /**< severity of the worst occurrence; see the functions */
+    adcgs_thumbnail_light light; /**< kind of change, for a step of light */
 } adcgs_fault;
 
 /**

@@ -20,10 +20,10 @@ typedef enum place { IN_MEMORY, IN_FILE, NOWHERE } place; /* NOWHERE: decoded ag
 
 typedef struct picture {
     adcgs_camera camera;
-    void *values;  /**< if in memory */
-    uint64_t at;   /**< offset, if in the file */
+    void *values; /**< if in memory */
+    uint64_t at;  /**< offset, if in the file */
     place place;
-    uint8_t bytes; /**< size of a value: 1, 2, or 4 for binary32 */
+    uint8_t bytes;   /**< size of a value: 1, 2, or 4 for binary32 */
     uint8_t *hidden; /**< [height * width] pixels that are unknown; values holds 0 for them; NULL: none */
 } picture;
 
@@ -124,7 +124,7 @@ static void find_place(adcgs_image_store *p, picture *to, int can_decode)
 {
     const size_t bytes = bytes_of(to);
     pthread_mutex_lock(&p->lock);
-    to->place = p->held + bytes <= p->config.memory          ? IN_MEMORY
+    to->place = p->held + bytes <= p->config.memory           ? IN_MEMORY
                 : adcgs_spool_take(&p->spool, bytes, &to->at) ? IN_FILE
                 : can_decode                                  ? NOWHERE
                                                               : IN_MEMORY;

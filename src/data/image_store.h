@@ -20,8 +20,8 @@ typedef int (*adcgs_image_store_progress)(void *user, uint32_t done, uint32_t n)
 
 typedef struct adcgs_image_store_config {
     adcgs_split split;
-    int divide;        /**< sizes are divided by this, see adcgs_scene_load() */
-    uint64_t memory;   /**< limit in bytes of images in memory; 0: adcgs_image_store_default_memory() */
+    int divide;                          /**< sizes are divided by this, see adcgs_scene_load() */
+    uint64_t memory;                     /**< limit in bytes of images in memory; 0: adcgs_image_store_default_memory() */
     adcgs_image_store_progress progress; /**< or NULL */
     void *user;
     adcgs_thumbnail *thumbnails; /**< [views] thumbnails to compute as images are loaded; or NULL */
@@ -55,11 +55,11 @@ uint32_t adcgs_image_store_decoded_again(const adcgs_image_store *pictures, cons
 
 /** Estimated storage of images. */
 typedef struct adcgs_image_store_need {
-    uint64_t bytes;         /**< of all images, estimated from one or two of them */
-    uint64_t memory, file;  /**< bytes kept in memory and in the file; the rest is decoded again */
-    uint64_t room;          /**< bytes available to the file */
-    int problem;            /**< errno, if there is no room at all */
-    uint32_t n, again;      /**< images, and the number of those that are decoded again */
+    uint64_t bytes;        /**< of all images, estimated from one or two of them */
+    uint64_t memory, file; /**< bytes kept in memory and in the file; the rest is decoded again */
+    uint64_t room;         /**< bytes available to the file */
+    int problem;           /**< errno, if there is no room at all */
+    uint32_t n, again;     /**< images, and the number of those that are decoded again */
 } adcgs_image_store_need;
 
 /** Estimates the storage before images are loaded. Decodes one or two images, or none if all fit into memory as binary32. */

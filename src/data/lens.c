@@ -6,9 +6,9 @@
 
 #include <math.h>
 
-#define REACH 1e4            /* largest r^2 that is considered */
-#define HALVINGS 60          /* bisection steps; the last ones reach rounding precision */
-#define START_HALVINGS 16    /* bisection steps before Newton's method takes over */
+#define REACH 1e4         /* largest r^2 that is considered */
+#define HALVINGS 60       /* bisection steps; the last ones reach rounding precision */
+#define START_HALVINGS 16 /* bisection steps before Newton's method takes over */
 #define NEWTON_STEPS 40
 #define NEWTON_TOLERANCE 1e-12
 
@@ -39,8 +39,8 @@ static bent bend_angle(const adcgs_lens *lens, double x, double y)
     const double factor = r > 0.0 ? a / r * (1.0 + s * (k[0] + s * (k[1] + s * (k[2] + s * k[3])))) : 1.0;
     const double growth = 1.0 + s * (3.0 * k[0] + s * (5.0 * k[1] + s * (7.0 * k[2] + s * 9.0 * k[3])));
     const double slope = r > 0.0 ? (growth / (1.0 + r * r) - factor) / (r * r) : 0.0; /* d factor / dr, over r */
-    return (bent){.x = x * factor, .y = y * factor, .xx = factor + x * x * slope, .xy = x * y * slope,
-                  .yy = factor + y * y * slope};
+    return (
+        bent){.x = x * factor, .y = y * factor, .xx = factor + x * x * slope, .xy = x * y * slope, .yy = factor + y * y * slope};
 }
 
 static bent bend(const adcgs_lens *lens, double x, double y)

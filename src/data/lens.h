@@ -19,11 +19,11 @@
  * direction of (x, y). Its length is a (1 + k1 a^2 + k2 a^4 + k3 a^6 + k4 a^8), a = atan(r) being the angle from the axis.
  */
 typedef struct adcgs_lens {
-    int32_t width, height;        /**< size of the recorded images; 0: a pinhole, the other members are unused */
+    int32_t width, height; /**< size of the recorded images; 0: a pinhole, the other members are unused */
     double fx, fy, cx, cy, skew;
-    double k[6], p[2];            /**< k1 .. k6; p1, p2 */
-    double k8;                    /**< not in OpenCV; nerfstudio calls it k4 */
-    int64_t is_fisheye;           /**< only k1 .. k4 count; as wide as a double, since lenses are compared as bytes */
+    double k[6], p[2];  /**< k1 .. k6; p1, p2 */
+    double k8;          /**< not in OpenCV; nerfstudio calls it k4 */
+    int64_t is_fisheye; /**< only k1 .. k4 count; as wide as a double, since lenses are compared as bytes */
 } adcgs_lens;
 
 /** Projects a direction. The result is meaningless beyond the model's first fold. */

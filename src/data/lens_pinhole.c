@@ -7,14 +7,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define MOVES_LEAST 0.01 /* pixels; smaller displacements do not justify resampling */
-#define CORNER_SLACK 1e-6 /* pixels, for rounding at the image's edge */
-#define PROBES 32        /* intervals along a side of the image; the lens is evaluated at their ends */
-#define RASTER 128       /* cells along the longer side, in the search for the rectangle */
-#define LEAST_SHARE 10   /* at least one in this many pixels must be left */
+#define MOVES_LEAST 0.01                 /* pixels; smaller displacements do not justify resampling */
+#define CORNER_SLACK 1e-6                /* pixels, for rounding at the image's edge */
+#define PROBES 32                        /* intervals along a side of the image; the lens is evaluated at their ends */
+#define RASTER 128                       /* cells along the longer side, in the search for the rectangle */
+#define LEAST_SHARE 10                   /* at least one in this many pixels must be left */
 #define FISHEYE_REACH 1.7320508075688772 /* tan of 60 degrees: further out, a pinhole's pixels resolve little */
 #define FOCAL_LEAST 1e-3
-#define NUMBER_MOST 1e9  /* bound on focal lengths and pixel offsets: whole numbers of this size are exact */
+#define NUMBER_MOST 1e9 /* bound on focal lengths and pixel offsets: whole numbers of this size are exact */
 
 /** A rectangle in the pinhole's image plane: whole numbers, in pixels, with the lens's principal point. */
 typedef struct area {
@@ -25,7 +25,7 @@ typedef struct search {
     const adcgs_lens *lens;
     double fold;
     double reach; /**< largest distance from the axis, to each side, that the pinhole may see */
-    area box; /**< bounds of everything that the image sees */
+    area box;     /**< bounds of everything that the image sees */
 } search;
 
 /** True if the image shows the direction that the pinhole sees at (u, v). */
@@ -185,8 +185,10 @@ static adcgs_status find_area(search *s, area *a, const char *path, adcgs_error 
     }
     const double width = a->side[2] - a->side[0], height = a->side[3] - a->side[1];
     if (is_empty(a) || width * height * LEAST_SHARE < (double)l->width * l->height)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: a pinhole sees %gx%g pixels of the distorted image, expected at least a "
-                          "tenth of %dx%d", path, fmax(width, 0.0), fmax(height, 0.0), l->width, l->height);
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "%s: a pinhole sees %gx%g pixels of the distorted image, expected at least a "
+                          "tenth of %dx%d",
+                          path, fmax(width, 0.0), fmax(height, 0.0), l->width, l->height);
     return ADCGS_OK;
 }
 

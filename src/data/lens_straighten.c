@@ -20,8 +20,8 @@ static taps find_taps(double x, int n)
 {
     const int whole = (int)(x + 0.5) - 1; /* rounds down, as x is not negative */
     const float f = (float)(x - 0.5 - whole);
-    taps t = {.weight = {((1.0f - 0.5f * f) * f - 0.5f) * f, (1.5f * f - 2.5f) * f * f + 1.0f,
-                         ((2.0f - 1.5f * f) * f + 0.5f) * f, (0.5f * f - 0.5f) * f * f}};
+    taps t = {.weight = {((1.0f - 0.5f * f) * f - 0.5f) * f, (1.5f * f - 2.5f) * f * f + 1.0f, ((2.0f - 1.5f * f) * f + 0.5f) * f,
+                         (0.5f * f - 0.5f) * f * f}};
     for (int i = 0; i < 4; i++)
         t.at[i] = ADCGS_MIN(ADCGS_MAX(whole - 1 + i, 0), n - 1);
     return t;

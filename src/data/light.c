@@ -66,8 +66,8 @@ adcgs_status adcgs_light_compensate(adcgs_scene *scene, adcgs_fault *found, cons
         memset(views[i].stops, 0, sizeof views[i].stops);
     adcgs_thumbnail *const thumbnails = adcgs_alloc(NULL, n, sizeof *thumbnails, error);
     uint8_t *const behind = adcgs_alloc(NULL, n, sizeof *behind, error);
-    adcgs_status status = thumbnails && behind ? compute_thumbnails(thumbnails, scene, config, pool,
-                                                                    error) : adcgs_alloc_status(error);
+    adcgs_status status =
+        thumbnails && behind ? compute_thumbnails(thumbnails, scene, config, pool, error) : adcgs_alloc_status(error);
     if (status == ADCGS_OK)
         status = adcgs_camera_order_find(&tracks, views, n, error);
     if (status == ADCGS_OK) {

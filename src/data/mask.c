@@ -12,8 +12,8 @@
 
 #include <math.h>
 
-#define SAME_SHARE 0.01    /* share of the pixels on which both may differ, for soft edges */
-#define NEARLY_BLACK 0.1f  /* largest value of black after JPEG's errors, for pixels from 0 to 1 */
+#define SAME_SHARE 0.01   /* share of the pixels on which both may differ, for soft edges */
+#define NEARLY_BLACK 0.1f /* largest value of black after JPEG's errors, for pixels from 0 to 1 */
 
 static int is_black(const float *pixel, int channels)
 {
@@ -73,9 +73,10 @@ adcgs_status adcgs_mask_settle(adcgs_image *mask, const char *path, adcgs_error 
     const int by_alpha = n.clear > 0 && n.clear < n.all, by_colour = !by_alpha || (n.black > 0 && n.black < n.all);
     adcgs_image out;
     if (by_colour && by_alpha && (double)(n.either - n.both) > SAME_SHARE * (double)n.all)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: its black hides %.0f %% of the pixels and its alpha %.0f %%, but they "
-                          "disagree: save the mask without one of the two", path, 100.0 * (double)n.black / (double)n.all,
-                          100.0 * (double)n.clear / (double)n.all);
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "%s: its black hides %.0f %% of the pixels and its alpha %.0f %%, but they "
+                          "disagree: save the mask without one of the two",
+                          path, 100.0 * (double)n.black / (double)n.all, 100.0 * (double)n.clear / (double)n.all);
     ADCGS_TRY(adcgs_image_alloc(&out, mask->width, mask->height, 1, path, error));
     for (size_t i = 0; i < n.all; i++) {
         const float *pixel = mask->data + i * (size_t)mask->channels;

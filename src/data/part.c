@@ -90,7 +90,7 @@ void adcgs_cuts_clear(adcgs_cuts *cuts)
 {
     adcgs_free(NULL, cuts->at);
     adcgs_free(NULL, cuts->reach);
-    *cuts = (adcgs_cuts){ .n = 0 };
+    *cuts = (adcgs_cuts){.n = 0};
 }
 
 /** Copies the training views from begin to end, with times relative to begin. */
@@ -133,7 +133,7 @@ adcgs_status adcgs_scene_part(adcgs_scene *part, const adcgs_scene *whole, const
 void adcgs_scene_part_clear(adcgs_scene *part)
 {
     adcgs_free(NULL, part->views[ADCGS_SPLIT_TRAIN]);
-    *part = (adcgs_scene){ .n_times = 0 };
+    *part = (adcgs_scene){.n_times = 0};
 }
 
 adcgs_status adcgs_scene_part_create(adcgs_scene **out, const adcgs_scene *whole, adcgs_error *error)

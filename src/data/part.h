@@ -10,9 +10,9 @@
 
 /** The cuts of a scene. Zero-initialise before use. */
 typedef struct adcgs_cuts {
-    uint32_t n;      /**< parts */
-    double *at;      /**< [n + 1] seconds, ascending: the scene's beginning, times of training views, its end */
-    double *reach;   /**< [n] seconds from a part's end to the last training view that it also takes; 0 for the last; or NULL */
+    uint32_t n;       /**< parts */
+    double *at;       /**< [n + 1] seconds, ascending: the scene's beginning, times of training views, its end */
+    double *reach;    /**< [n] seconds from a part's end to the last training view that it also takes; 0 for the last; or NULL */
     uint32_t moments; /**< distinct times of the part with the fewest, including its beginning and end */
 } adcgs_cuts;
 

@@ -33,15 +33,15 @@ typedef enum adcgs_axes { ADCGS_AXES_UNKNOWN, ADCGS_AXES_Y_UP, ADCGS_AXES_Z_UP, 
 #define ADCGS_BURNT 0.98f
 
 typedef struct adcgs_scene_view {
-    adcgs_camera camera;  /**< of the undistorted image at full size; name is the file's stem */
-    double time;          /**< seconds */
-    char *path;           /**< of the image or the video */
-    char *mask;           /**< of the mask, an image that marks the pixels that count, or NULL */
-    char *moving;         /**< of an image that marks moving regions: ground truth, for measuring only; or NULL */
+    adcgs_camera camera; /**< of the undistorted image at full size; name is the file's stem */
+    double time;         /**< seconds */
+    char *path;          /**< of the image or the video */
+    char *mask;          /**< of the mask, an image that marks the pixels that count, or NULL */
+    char *moving;        /**< of an image that marks moving regions: ground truth, for measuring only; or NULL */
     int is_video;
-    int64_t frame;        /**< index in a video, from 0 */
-    adcgs_lens lens;      /**< of the recorded image; width 0: it was taken by the pinhole camera itself */
-    float stops[3];       /**< gain of each channel, in stops, that loading removes (light.h) */
+    int64_t frame;   /**< index in a video, from 0 */
+    adcgs_lens lens; /**< of the recorded image; width 0: it was taken by the pinhole camera itself */
+    float stops[3];  /**< gain of each channel, in stops, that loading removes (light.h) */
 } adcgs_scene_view;
 
 typedef adcgs_points adcgs_scene_points; /**< positions in world units, as given by the scene */
@@ -59,23 +59,23 @@ typedef struct adcgs_scene {
     char *directory;
     uint32_t n_views[ADCGS_SPLITS];
     adcgs_scene_view *views[ADCGS_SPLITS];
-    double duration;      /**< seconds, 0 for a static scene */
-    adcgs_fps rate;       /**< frames per second of the selected frames, if known */
-    double intervals;     /**< between frames of the data set, from time 0 to 1 of its layout; 0: not given */
-    int is_outline;       /**< nonzero: the image files have not been checked for existence */
-    int counts;           /**< nonzero: image names are numbers, like those of frames, but all have the same time */
-    uint32_t n_times;     /**< distinct times of the training split */
-    double near_bound;    /**< least distance of visible content from training views, as given by the data set; 0: not given */
-    int has_alpha;        /**< images carry alpha, composited over background */
-    float background[3];  /**< default: white for images with alpha, else black */
-    adcgs_scene_points points; /**< initial points, n = 0 if the scene has none */
+    double duration;     /**< seconds, 0 for a static scene */
+    adcgs_fps rate;      /**< frames per second of the selected frames, if known */
+    double intervals;    /**< between frames of the data set, from time 0 to 1 of its layout; 0: not given */
+    int is_outline;      /**< nonzero: the image files have not been checked for existence */
+    int counts;          /**< nonzero: image names are numbers, like those of frames, but all have the same time */
+    uint32_t n_times;    /**< distinct times of the training split */
+    double near_bound;   /**< least distance of visible content from training views, as given by the data set; 0: not given */
+    int has_alpha;       /**< images carry alpha, composited over background */
+    float background[3]; /**< default: white for images with alpha, else black */
+    adcgs_scene_points points;         /**< initial points, n = 0 if the scene has none */
     uint8_t axes, units, colour_space; /**< codes of adcgs_stream */
-    double origin[3], scale; /**< the frame of reference, if given; scale 0: it follows from the training views */
-    adcgs_splat_scene *splats; /**< NULL: views are images; else path of a view is the path of the splats */
-    int measured;         /**< factor that reduces images for measuring a stream on them; 0 or 1: full size */
+    double origin[3], scale;           /**< the frame of reference, if given; scale 0: it follows from the training views */
+    adcgs_splat_scene *splats;         /**< NULL: views are images; else path of a view is the path of the splats */
+    int measured;                      /**< factor that reduces images for measuring a stream on them; 0 or 1: full size */
     char remarks[ADCGS_REMARKS_MAX][ADCGS_REMARK_BYTES]; /**< lines to print before training */
     int n_remarks;
-    struct adcgs_clips *clips; /**< open videos (clips.h) */
+    struct adcgs_clips *clips;       /**< open videos (clips.h) */
     const struct adcgs_scene *whole; /**< the whole scene if this is a part in time (part.h); else NULL */
 } adcgs_scene;
 

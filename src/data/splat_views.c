@@ -112,8 +112,7 @@ static adcgs_status draw(float *rgb, const adcgs_splat_scene *s, const float bac
         primitives.opacity = w->opacities;
     }
     ADCGS_TRY(adcgs_raster_create(&raster, cpu, NULL, NULL, error));
-    const adcgs_status status =
-        adcgs_raster_forward(raster, &primitives, &view, background, ADCGS_SCREEN_FILTER, rgb, 0, error);
+    const adcgs_status status = adcgs_raster_forward(raster, &primitives, &view, background, ADCGS_SCREEN_FILTER, rgb, 0, error);
     adcgs_raster_free(&raster);
     return status;
 }

@@ -9,9 +9,9 @@
 #include <math.h>
 #include <stddef.h>
 
-#define DARK 0.02   /* least value of a cell: black level and rounding dominate below */
-#define LIGHT 0.95  /* largest value of a cell: clipped values do not become brighter */
-#define FEW 32      /* least number of cells: fewer are one object, not the light */
+#define DARK 0.02  /* least value of a cell: black level and rounding dominate below */
+#define LIGHT 0.95 /* largest value of a cell: clipped values do not become brighter */
+#define FEW 32     /* least number of cells: fewer are one object, not the light */
 
 /** Means of the channels over pixels x0 to x1 of rows y0 to y1; NaN if less than half of these pixels are known. */
 static void mean_of(double mean[3], const float *rgb, size_t width, size_t height, size_t x0, size_t x1, size_t y0, size_t y1)
@@ -105,8 +105,8 @@ double adcgs_thumbnail_compare(const adcgs_thumbnail *a, const adcgs_thumbnail *
 /** Mean colour of a cell with known tints, from its four grey cells and the tints. */
 static void colour_of(double colour[3], const adcgs_thumbnail *thumbnail, int cell)
 {
-    const int side =
-        ADCGS_THUMBNAIL_SIDE, at = cell / ADCGS_THUMBNAIL_TINT_SIDE * 2 * side + cell % ADCGS_THUMBNAIL_TINT_SIDE * 2;
+    const int side = ADCGS_THUMBNAIL_SIDE,
+              at = cell / ADCGS_THUMBNAIL_TINT_SIDE * 2 * side + cell % ADCGS_THUMBNAIL_TINT_SIDE * 2;
     const float *const grey = thumbnail->cells + at;
     const double red = exp((double)thumbnail->tints[0][cell]), blue = exp((double)thumbnail->tints[1][cell]);
     colour[1] = 0.75 * ((double)grey[0] + (double)grey[1] + (double)grey[side] + (double)grey[side + 1]) / (red + 1.0 + blue);

@@ -9,8 +9,12 @@
 #define ADCGS_THUMBNAIL_TINTS (ADCGS_THUMBNAIL_TINT_SIDE * ADCGS_THUMBNAIL_TINT_SIDE)
 
 /** Kinds of change from one image to another. */
-typedef enum adcgs_thumbnail_light { ADCGS_LIGHT_BRIGHTER, ADCGS_LIGHT_REDDER, ADCGS_LIGHT_BLUER,
-                                    ADCGS_LIGHTS } adcgs_thumbnail_light;
+typedef enum adcgs_thumbnail_light {
+    ADCGS_LIGHT_BRIGHTER,
+    ADCGS_LIGHT_REDDER,
+    ADCGS_LIGHT_BLUER,
+    ADCGS_LIGHTS
+} adcgs_thumbnail_light;
 
 typedef struct adcgs_thumbnail {
     float cells[ADCGS_THUMBNAIL_CELLS]; /**< mean grey; NaN if less than half of the cell is known or it has no pixel */

@@ -21,8 +21,10 @@ static adcgs_status check_mask_size(const adcgs_scene_view *view, const char *pa
     adcgs_view_size(view, wanted);
     if (adcgs_mask_fits(width, height, wanted[0], wanted[1]))
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d like its image, or another size of the "
-                      "same aspect ratio", path, width, height, wanted[0], wanted[1]);
+    return adcgs_fail(error, ADCGS_ERR_DATA,
+                      "%s: %dx%d pixels, expected %dx%d like its image, or another size of the "
+                      "same aspect ratio",
+                      path, width, height, wanted[0], wanted[1]);
 }
 
 /** Reads a mask whose size was checked. */
@@ -74,6 +76,8 @@ adcgs_status adcgs_scene_check_masks(const adcgs_scene *scene, adcgs_error *erro
     }
     if (!n)
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: black everywhere, like the masks of all training images, so that no pixel "
-                      "is left for training: invert the masks", train[0].mask);
+    return adcgs_fail(error, ADCGS_ERR_DATA,
+                      "%s: black everywhere, like the masks of all training images, so that no pixel "
+                      "is left for training: invert the masks",
+                      train[0].mask);
 }

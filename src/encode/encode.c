@@ -13,8 +13,8 @@
 
 #include <math.h>
 
-#define PARTS_MAX 100000   /* ticks per frame, at most */
-#define TICK_WITHIN 1e-6   /* ticks: rounding error at which a time still counts as a whole number */
+#define PARTS_MAX 100000 /* ticks per frame, at most */
+#define TICK_WITHIN 1e-6 /* ticks: rounding error at which a time still counts as a whole number */
 
 adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error)
 {
@@ -102,8 +102,7 @@ static void set_time(adcgs_stream *s, const adcgs_scene *scene, const adcgs_cuts
     uint32_t parts = 1;
     s->rate_num = scene->rate.num;
     s->rate_den = scene->rate.den;
-    while (parts < PARTS_MAX && (uint64_t)s->rate_num * (parts + 1) <= UINT32_MAX &&
-           !are_all_whole(scene, cuts, parts))
+    while (parts < PARTS_MAX && (uint64_t)s->rate_num * (parts + 1) <= UINT32_MAX && !are_all_whole(scene, cuts, parts))
         parts++;
     s->timebase_num = s->rate_den;
     s->timebase_den = s->rate_num * parts;
@@ -150,7 +149,7 @@ void adcgs_encode_place(adcgs_stream *s, const adcgs_cuts *cuts, uint32_t part, 
 adcgs_status adcgs_encode_model(adcgs_model *model, const adcgs_stream *s, const adcgs_trainer *t, double begin, double end,
                                 adcgs_error *error)
 {
-    const adcgs_quantise_options options = { .cpu = t->cpu };
+    const adcgs_quantise_options options = {.cpu = t->cpu};
     const adcgs_status status = adcgs_quantise(model, t->f, &options, error);
     model->time_start = adcgs_ticks_to_seconds(s, nearest_tick(s, begin));
     model->time_end = adcgs_ticks_to_seconds(s, nearest_tick(s, end));
@@ -160,7 +159,7 @@ adcgs_status adcgs_encode_model(adcgs_model *model, const adcgs_stream *s, const
 /** If no anchor moves any more, keeps the motion networks of the previous segment, so that none are sent. */
 static adcgs_status keep_motion(adcgs_model *model, const adcgs_model *before, adcgs_error *error)
 {
-    static const int roles[] = { ADCGS_ROLE_COARSE, ADCGS_ROLE_FINE, ADCGS_ROLE_TIME };
+    static const int roles[] = {ADCGS_ROLE_COARSE, ADCGS_ROLE_FINE, ADCGS_ROLE_TIME};
     for (uint32_t i = 0; i < model->n; i++)
         if (!model->is_static[i])
             return ADCGS_OK;
@@ -184,7 +183,7 @@ adcgs_status adcgs_encode_predict(adcgs_model *model, const adcgs_model *before,
 static adcgs_status add_segment(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_cuts *cuts,
                                 uint32_t part, adcgs_error *error)
 {
-    const adcgs_quantise_options options = { .cpu = t->cpu, .rdo = rdo };
+    const adcgs_quantise_options options = {.cpu = t->cpu, .rdo = rdo};
     adcgs_model model;
     const adcgs_status status = adcgs_quantise(&model, t->f, &options, error);
     adcgs_encode_place(s, cuts, part, &model);
@@ -200,8 +199,8 @@ adcgs_status adcgs_encode_segment(adcgs_stream *s, const adcgs_trainer *t, const
 static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_encode_note *notes,
                                 uint32_t n_notes, adcgs_error *error)
 {
-    double ends[2] = { 0, t->scene->duration };
-    const adcgs_cuts cuts = { .n = 1, .at = ends };
+    double ends[2] = {0, t->scene->duration};
+    const adcgs_cuts cuts = {.n = 1, .at = ends};
     ADCGS_TRY(adcgs_encode_begin(s, t->scene, &cuts, notes, n_notes, error));
     return add_segment(s, t, rdo, &cuts, 0, error);
 }
@@ -247,8 +246,8 @@ adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcg
 {
     ADCGS_TRY(write_scene(stream, out, error));
     adcgs_stream back;
-    adcgs_span from = { .next = out->data, .left = out->size };
-    const adcgs_read_options options = { .cpu = cpu, .pool = pool, .strict_end = 1 };
+    adcgs_span from = {.next = out->data, .left = out->size};
+    const adcgs_read_options options = {.cpu = cpu, .pool = pool, .strict_end = 1};
     adcgs_stream_init(&back);
     adcgs_status status = adcgs_stream_read(&back, adcgs_span_read, &from, &options, NULL, NULL, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < stream->n_segments; i++) {

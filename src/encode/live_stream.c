@@ -8,7 +8,7 @@
 #include <math.h>
 
 #define NEAR 1e-5 /* tolerance for rounding of stored cameras, relative to 1 */
-#define LEVEL 3 /* the level of a growing stream, since its length is unknown */
+#define LEVEL 3   /* the level of a growing stream, since its length is unknown */
 
 /** Passes the written bytes to the reader. */
 static adcgs_status read_back(adcgs_encode_live *e, const adcgs_buffer *out, size_t begin, adcgs_error *error)
@@ -31,17 +31,17 @@ static adcgs_status compare(const adcgs_encode_live *e, const adcgs_model *writt
     ADCGS_TRY(adcgs_push_peek(e->reader, &read, &drawable, error));
     const int same = drawable && adcgs_model_equal(written, &read, &difference);
     adcgs_model_clear(&read, NULL);
-    return same     ? ADCGS_OK :
-           drawable ? adcgs_fail(error, ADCGS_ERR_INTERNAL, "the segment written decodes to another model: %s", difference.text) :
-                      adcgs_fail(error, ADCGS_ERR_INTERNAL, "the segment written cannot be decoded");
+    return same       ? ADCGS_OK
+           : drawable ? adcgs_fail(error, ADCGS_ERR_INTERNAL, "the segment written decodes to another model: %s", difference.text)
+                      : adcgs_fail(error, ADCGS_ERR_INTERNAL, "the segment written cannot be decoded");
 }
 
-adcgs_status adcgs_encode_live_open(adcgs_encode_live *e, const adcgs_scene *whole, const adcgs_cuts *cuts,
-                                    uint32_t max_anchors, const adcgs_encode_note *notes, uint32_t n_notes, adcgs_cpu_level cpu,
-                                    adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_encode_live_open(adcgs_encode_live *e, const adcgs_scene *whole, const adcgs_cuts *cuts, uint32_t max_anchors,
+                                    const adcgs_encode_note *notes, uint32_t n_notes, adcgs_cpu_level cpu, adcgs_pool *pool,
+                                    adcgs_error *error)
 {
-    const adcgs_read_options options = { .cpu = cpu, .pool = pool };
-    *e = (adcgs_encode_live){ .max_anchors = max_anchors };
+    const adcgs_read_options options = {.cpu = cpu, .pool = pool};
+    *e = (adcgs_encode_live){.max_anchors = max_anchors};
     adcgs_stream_init(&e->back);
     ADCGS_TRY(adcgs_encode_begin(&e->front, whole, cuts, notes, n_notes, error));
     e->front.level = LEVEL;
@@ -51,8 +51,8 @@ adcgs_status adcgs_encode_live_open(adcgs_encode_live *e, const adcgs_scene *who
 adcgs_status adcgs_encode_live_continue(adcgs_encode_live *e, adcgs_stream *resumed, uint32_t max_anchors, adcgs_cpu_level cpu,
                                         adcgs_pool *pool, adcgs_error *error)
 {
-    const adcgs_read_options options = { .cpu = cpu, .pool = pool };
-    *e = (adcgs_encode_live){ .front = *resumed, .max_anchors = max_anchors };
+    const adcgs_read_options options = {.cpu = cpu, .pool = pool};
+    *e = (adcgs_encode_live){.front = *resumed, .max_anchors = max_anchors};
     resumed->cameras = NULL;
     resumed->meta = NULL;
     resumed->n_cameras = resumed->n_meta = 0;
@@ -81,8 +81,10 @@ adcgs_status adcgs_encode_live_check(const adcgs_encode_live *e, const adcgs_sce
             v++;
         if (v == end || v->camera.width != c->width || v->camera.height != c->height ||
             fabs(v->camera.fx - c->fx) > NEAR * c->fx || !are_near(&v->camera, c, e->front.scene_scale))
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "the stream's camera %s is not one of the scene's: continue the stream "
-                                                      "with its own scene", c->name);
+            return adcgs_fail(error, ADCGS_ERR_USAGE,
+                              "the stream's camera %s is not one of the scene's: continue the stream "
+                              "with its own scene",
+                              c->name);
     }
     return ADCGS_OK;
 }

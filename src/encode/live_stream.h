@@ -10,11 +10,11 @@
 #include "stream/grow.h"
 
 typedef struct adcgs_encode_live {
-    adcgs_stream front;   /**< values that all segments share */
+    adcgs_stream front; /**< values that all segments share */
     adcgs_grow *grow;
-    adcgs_stream back;    /**< the stream as read back */
+    adcgs_stream back; /**< the stream as read back */
     struct adcgs_push_reader *reader;
-    adcgs_model model;    /**< of the segment written last; n 0: none */
+    adcgs_model model; /**< of the segment written last; n 0: none */
     uint32_t max_anchors;
 } adcgs_encode_live;
 

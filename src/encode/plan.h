@@ -16,26 +16,26 @@
 #include "train/train_config.h"
 
 #define ADCGS_PLAN_FORMAT 1
-#define ADCGS_PLAN_DIGEST 33         /**< hexadecimal digits and a zero */
+#define ADCGS_PLAN_DIGEST 33 /**< hexadecimal digits and a zero */
 #define ADCGS_NOTE_PLAN "plan"
 #define ADCGS_NOTE_FOLLOWS "follows"
 
 typedef struct adcgs_plan_segment {
-    uint8_t follows;  /**< it is trained from the previous segment */
-    uint32_t views;   /**< training views */
-    double cost;      /**< estimate, seconds of one processor */
+    uint8_t follows; /**< it is trained from the previous segment */
+    uint32_t views;  /**< training views */
+    double cost;     /**< estimate, seconds of one processor */
 } adcgs_plan_segment;
 
 /** Zero-initialise before use. */
 typedef struct adcgs_plan {
-    char encoder[64]; /**< the program that made it; segments of another version would differ */
+    char encoder[64];               /**< the program that made it; segments of another version would differ */
     char digest[ADCGS_PLAN_DIGEST]; /**< of the file's values, independent of layout; set by reading */
     /* How the scene is opened. */
-    char *scene;      /**< path of the scene at planning; it may lie elsewhere now */
-    char *points;     /**< file of initial points, or NULL */
-    char *frames;     /**< as on the command line, or NULL */
+    char *scene;  /**< path of the scene at planning; it may lie elsewhere now */
+    char *points; /**< file of initial points, or NULL */
+    char *frames; /**< as on the command line, or NULL */
     int dataset;
-    adcgs_fps rate;   /**< requested frame rate; den 0: the scene's */
+    adcgs_fps rate;                            /**< requested frame rate; den 0: the scene's */
     char outline[2 * ADCGS_CONTENT_BYTES + 1]; /**< adcgs_scene_outline() */
     int has_alpha;
     float background[3];

@@ -255,9 +255,10 @@ static adcgs_status read_plan(adcgs_json_place *at, adcgs_plan *p)
     if (!json_is_integer(format))
         return adcgs_fail(at->error, ADCGS_ERR_DATA, "%s: not a plan: no number adcgs_plan", at->path);
     if (json_integer_value(format) != ADCGS_PLAN_FORMAT)
-        return adcgs_fail(at->error, ADCGS_ERR_UNSUPPORTED, "%s: adcgs_plan: %lld, expected %d: use the version that made this "
-                                                            "plan", at->path,
-                          (long long)json_integer_value(format), ADCGS_PLAN_FORMAT);
+        return adcgs_fail(at->error, ADCGS_ERR_UNSUPPORTED,
+                          "%s: adcgs_plan: %lld, expected %d: use the version that made this "
+                          "plan",
+                          at->path, (long long)json_integer_value(format), ADCGS_PLAN_FORMAT);
     ADCGS_TRY(get_word(at, "encoder", p->encoder, sizeof p->encoder));
     ADCGS_TRY(read_scene(at, p));
     ADCGS_TRY(read_settings(at, p));
@@ -270,7 +271,7 @@ adcgs_status adcgs_plan_read(adcgs_plan *p, const char *path, adcgs_error *error
 {
     json_t *root;
     ADCGS_TRY(adcgs_json_load(&root, path, error));
-    adcgs_json_place at = { .path = path, .root = root, .error = error };
+    adcgs_json_place at = {.path = path, .root = root, .error = error};
     const adcgs_status status = read_plan(&at, p);
     json_decref(root);
     return status;

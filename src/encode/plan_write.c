@@ -31,7 +31,7 @@ void adcgs_plan_clear(adcgs_plan *p)
     free(p->frames);
     adcgs_cuts_clear(&p->cuts);
     adcgs_free(NULL, p->segments);
-    *p = (adcgs_plan){ .dataset = 0 };
+    *p = (adcgs_plan){.dataset = 0};
 }
 
 /** The mean share of all image pixels that an iteration renders: images begin smaller. */
@@ -77,7 +77,7 @@ static void put_reals(adcgs_json *j, const char *key, const double *x, int n)
 
 static void put_scene(adcgs_json *j, const adcgs_plan *p)
 {
-    const double background[3] = { (double)p->background[0], (double)p->background[1], (double)p->background[2] };
+    const double background[3] = {(double)p->background[0], (double)p->background[1], (double)p->background[2]};
     char rate[48];
     snprintf(rate, sizeof rate, "%lld/%lld", (long long)p->rate.num, (long long)p->rate.den);
     put_text(j, "scene", p->scene);
@@ -150,7 +150,7 @@ static adcgs_status put_segment(adcgs_json *j, const adcgs_plan *p, const adcgs_
 
 static adcgs_status put_plan(adcgs_json *j, const adcgs_plan *p, const adcgs_scene *scene, adcgs_error *error)
 {
-    const double base[2] = { p->timebase_num, p->timebase_den };
+    const double base[2] = {p->timebase_num, p->timebase_den};
     adcgs_json_open(j, NULL, '{');
     adcgs_json_int(j, "adcgs_plan", ADCGS_PLAN_FORMAT);
     adcgs_json_string(j, "encoder", p->encoder);
@@ -182,7 +182,7 @@ static adcgs_status write_file(adcgs_json *j, const char *path, adcgs_error *err
 /** Writes the plan under another name and reads it back: equal plans have equal digests. */
 static adcgs_status compare(adcgs_json *j, const char *path, adcgs_error *error)
 {
-    adcgs_plan there = { .dataset = 0 }, here = { .dataset = 0 };
+    adcgs_plan there = {.dataset = 0}, here = {.dataset = 0};
     const size_t n = strlen(path) + 32;
     char *other = malloc(n);
     if (!other)
@@ -195,8 +195,9 @@ static adcgs_status compare(adcgs_json *j, const char *path, adcgs_error *error)
         status = adcgs_plan_read(&here, other, error);
     unlink(other);
     if (status == ADCGS_OK && strcmp(here.digest, there.digest))
-        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: exists and is another plan, which finished parts may belong to: remove it, "
-                                                 "or name another file",
+        status = adcgs_fail(error, ADCGS_ERR_IO,
+                            "%s: exists and is another plan, which finished parts may belong to: remove it, "
+                            "or name another file",
                             path);
     adcgs_plan_clear(&there);
     adcgs_plan_clear(&here);

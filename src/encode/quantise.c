@@ -155,7 +155,7 @@ static void set_anchors(adcgs_model *model, const adcgs_fmodel *f)
 /** Sets the tiers, or a single tier if one has lost all its anchors. */
 static void set_tiers(adcgs_model *model, const adcgs_fmodel *f)
 {
-    uint32_t brings[ADCGS_TIERS_MAX] = { 0 };
+    uint32_t brings[ADCGS_TIERS_MAX] = {0};
     model->finest = f->finest;
     memcpy(model->growth, f->growth, sizeof model->growth);
     for (uint32_t i = 0; i < model->n; i++)
@@ -169,8 +169,8 @@ static void set_tiers(adcgs_model *model, const adcgs_fmodel *f)
 
 static void set_steps(adcgs_model *model, const adcgs_fmodel *f)
 {
-    float *const d[4] = { model->d_fv, model->d_fg, model->d_sigma, model->d_colour };
-    const int rows[4] = { f->params.n_fv, f->params.n_fg, adcgs_sigma_rows(&model->params), ADCGS_COLOUR_N };
+    float *const d[4] = {model->d_fv, model->d_fg, model->d_sigma, model->d_colour};
+    const int rows[4] = {f->params.n_fv, f->params.n_fg, adcgs_sigma_rows(&model->params), ADCGS_COLOUR_N};
     for (int i = 0; i < 4; i++)
         for (int r = 0; r < rows[i]; r++)
             d[i][r] = f->step[i][r] * 0x1p-6f;
@@ -207,7 +207,7 @@ static void quantise_site(void *user, const adcgs_latent_site *s)
 {
     const quantiser *q = user;
     const adcgs_fmodel *f = q->f;
-    static const int groups[ADCGS_GROUP_FG] = { ADCGS_P_ETA, ADCGS_P_FV, ADCGS_P_SIGMA, ADCGS_P_COLOUR };
+    static const int groups[ADCGS_GROUP_FG] = {ADCGS_P_ETA, ADCGS_P_FV, ADCGS_P_SIGMA, ADCGS_P_COLOUR};
     const int group = s->group >= ADCGS_GROUP_FG ? ADCGS_P_FG : groups[s->group];
     const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
     const int base = group == ADCGS_P_FG ? s->k * f->params.n_fg : 0;
@@ -223,8 +223,8 @@ static void quantise_site(void *user, const adcgs_latent_site *s)
         double n = rint(wanted);
         n = n >= most ? most : n >= -most ? n : -most; /* keeps the value in range for any n */
         if (curvature)
-            n = adcgs_rdo_level(q->model->shape[s->group], s->si[c], wanted, (int32_t)n,
-                                0.5 * curvature[at] * step * step, q->o->rdo->lambda_bit);
+            n = adcgs_rdo_level(q->model->shape[s->group], s->si[c], wanted, (int32_t)n, 0.5 * curvature[at] * step * step,
+                                q->o->rdo->lambda_bit);
         s->yq[c] = (int16_t)adcgs_clip(64 * (int32_t)n + mu, 32767);
         if (q->o->mu)
             q->o->mu[group][at] = adcgs_mean_pack((float)mu, most == 0);
@@ -248,7 +248,7 @@ static adcgs_status walk_latents(quantiser *q, adcgs_model *model, adcgs_error *
 static adcgs_status quantise_latents(adcgs_model *model, const adcgs_fmodel *f, const adcgs_quantise_options *options,
                                      adcgs_error *error)
 {
-    quantiser q = { .f = f, .model = model, .o = options };
+    quantiser q = {.f = f, .model = model, .o = options};
     ADCGS_TRY(adcgs_steps_init(&q.steps, model, options->cpu, NULL, error));
     const size_t factors = (size_t)f->groups * (size_t)q.steps.n * ADCGS_LANES;
     float *own = options->factor ? NULL : adcgs_alloc(NULL, factors, sizeof *own, error);

@@ -13,7 +13,6 @@
  * Builds the model of f. Anchors keep f's order (Morton). Values that already lie on levels, like those of a frozen model, stay
  * unchanged. The caller clears the model.
  */
-adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adcgs_quantise_options *options,
-                            adcgs_error *error);
+adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error);
 
 #endif

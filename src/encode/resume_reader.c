@@ -14,8 +14,8 @@
 adcgs_status adcgs_resume_reader_open(adcgs_resume_reader *p, const char *path, adcgs_cpu_level cpu, adcgs_pool *pool,
                                       adcgs_error *error)
 {
-    const adcgs_read_options options = { .cpu = cpu, .pool = pool };
-    *p = (adcgs_resume_reader){ .path = path, .file = fopen(path, "rb") };
+    const adcgs_read_options options = {.cpu = cpu, .pool = pool};
+    *p = (adcgs_resume_reader){.path = path, .file = fopen(path, "rb")};
     adcgs_stream_init(&p->stream);
     if (!p->file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: %s", path, strerror(errno));
@@ -32,7 +32,7 @@ void adcgs_resume_reader_close(adcgs_resume_reader *p)
     if (p->file)
         fclose(p->file);
     free(p->bytes);
-    *p = (adcgs_resume_reader){ .file = NULL };
+    *p = (adcgs_resume_reader){.file = NULL};
 }
 
 /** Decodes to the end of a chunk at most. A fault of the stream ends reading, without a failure. */
@@ -72,13 +72,13 @@ static adcgs_status take_last(adcgs_resume_reader *p, adcgs_model *model, adcgs_
     if (drawable && !model->absent && model->layers == adcgs_params_layers(&model->params))
         return ADCGS_OK;
     adcgs_model_clear(model, NULL);
-    *model = (adcgs_model){ .n = 0 };
+    *model = (adcgs_model){.n = 0};
     return ADCGS_OK;
 }
 
 adcgs_status adcgs_resume_reader_next(adcgs_resume_reader *p, adcgs_model *model, adcgs_error *error)
 {
-    *model = (adcgs_model){ .n = 0 };
+    *model = (adcgs_model){.n = 0};
     while (!p->over && p->stream.first_segment + p->stream.n_segments == p->given)
         ADCGS_TRY(step(p, error));
     const uint32_t held = p->stream.n_segments;

@@ -8,16 +8,16 @@
 #include <stdio.h>
 
 typedef struct adcgs_resume_reader {
-    adcgs_stream stream;   /**< values that all segments share; valid after the first segment */
+    adcgs_stream stream; /**< values that all segments share; valid after the first segment */
     adcgs_push_reader *reader;
     const char *path;
     FILE *file;
-    uint8_t *bytes;        /**< read and not yet decoded: n bytes, from `at` on */
+    uint8_t *bytes; /**< read and not yet decoded: n bytes, from `at` on */
     size_t at, n;
-    uint32_t given;        /**< segments returned so far, without a last one that no other follows */
-    int over;              /**< nothing more can be read */
-    int is_done;           /**< nothing more can be returned */
-    adcgs_error fault;     /**< the reason, if it was damage */
+    uint32_t given;    /**< segments returned so far, without a last one that no other follows */
+    int over;          /**< nothing more can be read */
+    int is_done;       /**< nothing more can be returned */
+    adcgs_error fault; /**< the reason, if it was damage */
 } adcgs_resume_reader;
 
 /** path outlives it. Call adcgs_resume_reader_close() on failure, too. */

@@ -71,7 +71,7 @@ static adcgs_status copy(copier *c)
 adcgs_status adcgs_encode_replace_head(FILE *to, FILE *from, const uint8_t *head, size_t bytes, const char *path,
                                        adcgs_error *error)
 {
-    copier c = { .to = to, .from = from, .head = head, .head_bytes = bytes, .path = path, .error = error };
+    copier c = {.to = to, .from = from, .head = head, .head_bytes = bytes, .path = path, .error = error};
     adcgs_buffer_init(&c.chunk);
     const adcgs_status status = copy(&c);
     adcgs_buffer_clear(&c.chunk);

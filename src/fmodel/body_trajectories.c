@@ -57,7 +57,7 @@ void adcgs_bodies_pose_back(const adcgs_fmodel *f, const float *columns, const a
 /** Converts a pose's translation from one pivot to another: R (x - a) + a + way = R (x - b) + b + out. */
 static void move_pivot(const double q[4], const double a[3], const double way[3], const double b[3], double out[3])
 {
-    const double v[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
+    const double v[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     double r[12];
     adcgs_rotation_to_pose(q, r);
     for (int i = 0; i < 3; i++)
@@ -75,7 +75,7 @@ void adcgs_bodies_set_pose(adcgs_fmodel *f, int body, int row, const double q[4]
     const float *c = f->centre[body - 1];
     float *z = pose_of(f, body, row);
     double own[3];
-    move_pivot(q, pivot, way, (const double[]){ (double)c[0], (double)c[1], (double)c[2] }, own);
+    move_pivot(q, pivot, way, (const double[]){(double)c[0], (double)c[1], (double)c[2]}, own);
     for (int i = 0; i < 4; i++)
         z[i] = (float)((q[i] - !i) / (double)ADCGS_POSE_SCALE);
     for (int a = 0; a < 3; a++)
@@ -114,11 +114,11 @@ static void find_centre(const adcgs_fmodel *f, int body, float centre[3])
 void adcgs_bodies_recentre(adcgs_fmodel *f)
 {
     for (int b = 1; b <= f->params.bodies; b++) {
-        float *c = f->centre[b - 1], found[3] = { c[0], c[1], c[2] };
+        float *c = f->centre[b - 1], found[3] = {c[0], c[1], c[2]};
         find_centre(f, b, found);
         if (!memcmp(found, c, sizeof found))
             continue;
-        const double from[3] = { (double)c[0], (double)c[1], (double)c[2] };
+        const double from[3] = {(double)c[0], (double)c[1], (double)c[2]};
         memcpy(c, found, sizeof found);
         for (int row = 0; row < f->params.time_rows; row++) {
             const float *z = pose_of(f, b, row);

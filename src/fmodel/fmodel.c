@@ -10,22 +10,33 @@
 #include <math.h>
 
 const uint8_t adcgs_fmodel_role[ADCGS_P_COUNT] = {
-    [ADCGS_P_THETA] = ADCGS_ROLE_PREDICTION, [ADCGS_P_OMEGA] = ADCGS_ROLE_COARSE,       [ADCGS_P_VARPI] = ADCGS_ROLE_FINE,
-    [ADCGS_P_TIME] = ADCGS_ROLE_TIME,        [ADCGS_P_E_FV] = ADCGS_ROLE_ENTROPY_FV,
-    [ADCGS_P_E_SIGMA] = ADCGS_ROLE_ENTROPY_SIGMA, [ADCGS_P_E_COLOUR] = ADCGS_ROLE_ENTROPY_COLOUR,
-    [ADCGS_P_E_FG] = ADCGS_ROLE_ENTROPY_FG, [ADCGS_P_E_FG + 1] = ADCGS_ROLE_ENTROPY_FG + 1,
-    [ADCGS_P_E_FG + 2] = ADCGS_ROLE_ENTROPY_FG + 2, [ADCGS_P_E_FG + 3] = ADCGS_ROLE_ENTROPY_FG + 3,
+    [ADCGS_P_THETA] = ADCGS_ROLE_PREDICTION,
+    [ADCGS_P_OMEGA] = ADCGS_ROLE_COARSE,
+    [ADCGS_P_VARPI] = ADCGS_ROLE_FINE,
+    [ADCGS_P_TIME] = ADCGS_ROLE_TIME,
+    [ADCGS_P_E_FV] = ADCGS_ROLE_ENTROPY_FV,
+    [ADCGS_P_E_SIGMA] = ADCGS_ROLE_ENTROPY_SIGMA,
+    [ADCGS_P_E_COLOUR] = ADCGS_ROLE_ENTROPY_COLOUR,
+    [ADCGS_P_E_FG] = ADCGS_ROLE_ENTROPY_FG,
+    [ADCGS_P_E_FG + 1] = ADCGS_ROLE_ENTROPY_FG + 1,
+    [ADCGS_P_E_FG + 2] = ADCGS_ROLE_ENTROPY_FG + 2,
+    [ADCGS_P_E_FG + 3] = ADCGS_ROLE_ENTROPY_FG + 3,
     [ADCGS_P_E_STEPS] = ADCGS_ROLE_ENTROPY_STEPS,
 };
 
 int adcgs_fmodel_rows(const adcgs_fmodel *f, int group)
 {
     switch (group) {
-    case ADCGS_P_FV: return f->params.n_fv;
-    case ADCGS_P_FG: return f->params.k * f->params.n_fg;
-    case ADCGS_P_SIGMA: return adcgs_sigma_rows(&f->params);
-    case ADCGS_P_COLOUR: return ADCGS_COLOUR_N;
-    default: return f->params.n_eta;
+    case ADCGS_P_FV:
+        return f->params.n_fv;
+    case ADCGS_P_FG:
+        return f->params.k * f->params.n_fg;
+    case ADCGS_P_SIGMA:
+        return adcgs_sigma_rows(&f->params);
+    case ADCGS_P_COLOUR:
+        return ADCGS_COLOUR_N;
+    default:
+        return f->params.n_eta;
     }
 }
 
@@ -71,9 +82,9 @@ static void layout_networks(adcgs_fmodel *f)
         m[i].entropy = 1;
 }
 
-static const char *const names[ADCGS_P_COUNT] = { "f_v", "f_g", "sigma", "colour", "eta", "theta", "omega", "varpi", "time",
-                                                  "eta prior", "steps", "E_fv", "E_sigma", "E_colour", "E_fg1", "E_fg2", "E_fg3",
-                                                  "E_fg4", "E_q" };
+static const char *const names[ADCGS_P_COUNT] = {"f_v",   "f_g",   "sigma",     "colour", "eta",  "theta",   "omega",
+                                                 "varpi", "time",  "eta prior", "steps",  "E_fv", "E_sigma", "E_colour",
+                                                 "E_fg1", "E_fg2", "E_fg3",     "E_fg4",  "E_q"};
 
 static adcgs_status param_alloc(adcgs_param *p, size_t n, adcgs_error *error)
 {
@@ -133,7 +144,7 @@ static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error 
 
 static float first_step(const adcgs_fmodel *f, int group)
 {
-    const float step[ADCGS_P_ANCHOR] = { f->shape.step_fv, f->shape.step_fg, f->shape.step_sigma, f->shape.step_colour, 1.0f };
+    const float step[ADCGS_P_ANCHOR] = {f->shape.step_fv, f->shape.step_fg, f->shape.step_sigma, f->shape.step_colour, 1.0f};
     return step[group];
 }
 
@@ -350,17 +361,17 @@ adcgs_time_rows adcgs_fmodel_time_rows(const adcgs_params *params, float t)
 {
     const uint32_t rows = params->time_rows;
     if (rows < 2)
-        return (adcgs_time_rows){ 0, 1, { 1 } };
+        return (adcgs_time_rows){0, 1, {1}};
     const adcgs_time_place at = adcgs_time_place_of(t, rows);
     if (!params->smooth_time)
-        return (adcgs_time_rows){ (int)at.row, 2, { 1 - at.fraction, at.fraction } };
+        return (adcgs_time_rows){(int)at.row, 2, {1 - at.fraction, at.fraction}};
     const float *w = at.weight;
     const int before = at.row > 0, behind = at.row + 2 < rows;
     /* A missing row is extrapolated: twice its neighbour minus the row beyond it. */
     const float b = w[1] + (before ? 0 : 2 * w[0]) - (behind ? 0 : w[3]);
     const float c = w[2] + (behind ? 0 : 2 * w[3]) - (before ? 0 : w[0]);
-    return before ? (adcgs_time_rows){ (int)at.row - 1, 3 + behind, { w[0], b, c, w[3] } } :
-                    (adcgs_time_rows){ 0, 2 + behind, { b, c, w[3] } };
+    return before ? (adcgs_time_rows){(int)at.row - 1, 3 + behind, {w[0], b, c, w[3]}}
+                  : (adcgs_time_rows){0, 2 + behind, {b, c, w[3]}};
 }
 
 float adcgs_fmodel_presence(const adcgs_fmodel *f, uint32_t anchor, float t)

@@ -15,7 +15,7 @@
 /** Groups of trained parameters. The first five are per anchor, the rest are networks. */
 typedef enum adcgs_pgroup {
     ADCGS_P_FV,
-    ADCGS_P_FG,     /**< [group][k][n_fg][64] */
+    ADCGS_P_FG, /**< [group][k][n_fg][64] */
     ADCGS_P_SIGMA,
     ADCGS_P_COLOUR,
     ADCGS_P_ETA,
@@ -29,7 +29,7 @@ typedef enum adcgs_pgroup {
     ADCGS_P_E_FV,
     ADCGS_P_E_SIGMA,
     ADCGS_P_E_COLOUR,
-    ADCGS_P_E_FG, /**< + chunk */
+    ADCGS_P_E_FG,                                      /**< + chunk */
     ADCGS_P_E_STEPS = ADCGS_P_E_FG + ADCGS_CHUNKS_MAX, /**< E_q: octaves by which an anchor's steps differ */
     ADCGS_P_COUNT
 } adcgs_pgroup;
@@ -56,24 +56,24 @@ typedef struct adcgs_shape {
 typedef struct adcgs_fmodel {
     adcgs_params params;
     adcgs_shape shape;
-    float origin[3], voxel;     /**< scene units */
-    uint32_t n, groups;         /**< anchors; ceil(n/64) */
-    int is_part;                /**< 1: part of a stream of several segments, whose parameters stay even if nothing moves */
-    uint32_t (*pos)[3];         /**< [n] voxels, Morton order */
-    float *x;                   /**< [group][3][64] positions */
-    float *code;                /**< [group][6*octaves][64] f_p */
-    float *keep;                /**< [group][k][64] primitives that exist */
-    float *moving;              /**< [group][64] 1: moving; 0: static */
-    float *live;                /**< [group][64] 1 for anchors, 0 for padding */
-    float *trainable;           /**< [group][64] 0: the anchor is frozen, with the values of the previous segment; 1: trained */
-    int follows;                /**< 1: continues the model of the previous segment, see from_model.h */
-    uint8_t *body;              /**< [group][64] rigid body of the anchor while it moves, from 1; 0: none */
-    uint8_t *tier;              /**< [group][64] tier of the anchor; see train/tier_assignment.h */
+    float origin[3], voxel; /**< scene units */
+    uint32_t n, groups;     /**< anchors; ceil(n/64) */
+    int is_part;            /**< 1: part of a stream of several segments, whose parameters stay even if nothing moves */
+    uint32_t (*pos)[3];     /**< [n] voxels, Morton order */
+    float *x;               /**< [group][3][64] positions */
+    float *code;            /**< [group][6*octaves][64] f_p */
+    float *keep;            /**< [group][k][64] primitives that exist */
+    float *moving;          /**< [group][64] 1: moving; 0: static */
+    float *live;            /**< [group][64] 1 for anchors, 0 for padding */
+    float *trainable;       /**< [group][64] 0: the anchor is frozen, with the values of the previous segment; 1: trained */
+    int follows;            /**< 1: continues the model of the previous segment, see from_model.h */
+    uint8_t *body;          /**< [group][64] rigid body of the anchor while it moves, from 1; 0: none */
+    uint8_t *tier;          /**< [group][64] tier of the anchor; see train/tier_assignment.h */
     uint8_t finest, growth[ADCGS_TIERS_MAX - 1]; /**< as in adcgs_model */
-    float centre[ADCGS_BODIES_MAX][3]; /**< centres of rotation of the bodies; see body_trajectories.h */
+    float centre[ADCGS_BODIES_MAX][3];           /**< centres of rotation of the bodies; see body_trajectories.h */
     adcgs_param param[ADCGS_P_COUNT];
-    adcgs_mlp mlp[ADCGS_P_COUNT]; /**< of the network groups */
-    float *step[ADCGS_P_ANCHOR];  /**< quantiser steps per feature row of a group, from ADCGS_P_STEP */
+    adcgs_mlp mlp[ADCGS_P_COUNT];  /**< of the network groups */
+    float *step[ADCGS_P_ANCHOR];   /**< quantiser steps per feature row of a group, from ADCGS_P_STEP */
     uint8_t density[ADCGS_GROUPS]; /**< shape of the density of each group of channels, as in adcgs_model.shape */
 } adcgs_fmodel;
 

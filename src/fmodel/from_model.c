@@ -59,7 +59,7 @@ static adcgs_status take_networks(adcgs_fmodel *f, const adcgs_model *model, adc
 
 static void take_steps(adcgs_fmodel *f, const adcgs_model *model)
 {
-    const float *const d[ADCGS_P_ETA] = { model->d_fv, model->d_fg, model->d_sigma, model->d_colour };
+    const float *const d[ADCGS_P_ETA] = {model->d_fv, model->d_fg, model->d_sigma, model->d_colour};
     for (int i = 0; i < ADCGS_P_ETA; i++)
         for (int r = 0; r < adcgs_fmodel_rows(f, i); r++) {
             f->step[i][r] = 64 * d[i][i == ADCGS_P_FG ? r % f->params.n_fg : r];

@@ -152,20 +152,20 @@ void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, ui
     for (int i = 1; i < m->hidden; i++) {
         float *next = h + (size_t)i * tile;
         dsp->residual(dsp, next, below + (i - 1) * m->width, m->use + m->b[i],
-                      &(adcgs_square){ m->width, m->use + m->w[i], adcgs_mlp_packed(m, i, 0) }, next - tile);
+                      &(adcgs_square){m->width, m->use + m->w[i], adcgs_mlp_packed(m, i, 0)}, next - tile);
     }
     dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width,
                      h + (size_t)(m->hidden - 1) * tile, m->out, m->width);
 }
 
-void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below,
-                         const float *dout, float *dz)
+void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below, const float *dout,
+                         float *dz)
 {
     const size_t tile = (size_t)m->width * ADCGS_LANES;
     /* dz[0] carries dL/dh down to layer 0, where it becomes that layer's gradient. */
     dsp->dense.dense(dz, NULL, NULL, m->turn + m->w[m->hidden], (size_t)m->out, dout, m->width, m->out);
     for (int i = m->hidden - 1; i > 0; i--) {
-        const adcgs_square turn = { m->width, m->turn + m->w[i], adcgs_mlp_packed(m, i, 1) };
+        const adcgs_square turn = {m->width, m->turn + m->w[i], adcgs_mlp_packed(m, i, 1)};
         dsp->residual_back(dsp, dz, dz + (size_t)i * tile, below + (i - 1) * m->width, &turn, dz, h + (size_t)(i - 1) * tile);
     }
     dsp->lrelu_back(dz, h, m->width);

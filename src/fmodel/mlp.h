@@ -20,9 +20,9 @@ typedef struct adcgs_mlp {
     int in[ADCGS_MLP_LAYERS], n_out[ADCGS_MLP_LAYERS];
     size_t w[ADCGS_MLP_LAYERS], b[ADCGS_MLP_LAYERS]; /**< offsets into the block */
     size_t n;                                        /**< parameters; 0: the network does not exist */
-    float *use;   /**< [n] the weights of the forward pass: the parameters, or their lattice values */
-    float *turn;  /**< [n] the same transposed per layer: w^T [n_in][n_out] at w's offset */
-    uint32_t *packed; /**< see adcgs_mlp_packed(); NULL in an entropy network */
+    float *use;                           /**< [n] the weights of the forward pass: the parameters, or their lattice values */
+    float *turn;                          /**< [n] the same transposed per layer: w^T [n_in][n_out] at w's offset */
+    uint32_t *packed;                     /**< see adcgs_mlp_packed(); NULL in an entropy network */
     int8_t weight_step[ADCGS_MLP_LAYERS]; /**< exponent e of the step 2^-e of each layer's weights, or ADCGS_WEIGHT_STEP_NONE */
     uint8_t entropy; /**< an entropy network: on the lattice it is the integer network of spec clause "E24" */
 } adcgs_mlp;
@@ -61,8 +61,8 @@ static inline size_t adcgs_mlp_below_rows(const adcgs_mlp *m)
 /** Evaluates layers 1.. of a network: h[0] holds layer 0's sums and is activated in place. */
 void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, uint64_t *below, float *out);
 /** Gradients dz of every hidden layer's sums, from dout. */
-void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below,
-                         const float *dout, float *dz);
+void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below, const float *dout,
+                         float *dz);
 /** Weight gradients of layers 1.. over tiles of the given strides. */
 void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
                             size_t sdz, const float *dout, size_t sdout, int tiles);

@@ -139,7 +139,7 @@ static void forward_time(adcgs_pass *p, const adcgs_fmodel *f, float t)
             p->time_code[j] += at.weight[i] * z[i * columns + j];
     }
     adcgs_bodies_pose(f, p->time_code, p->pose);
-    const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
+    const int which[2] = {ADCGS_P_OMEGA, ADCGS_P_VARPI};
     for (int i = 0; i < 2; i++) {
         const adcgs_mlp *m = &f->mlp[which[i]];
         for (int o = 0; m->n && o < m->width; o++) {
@@ -155,7 +155,7 @@ static void forward_time(adcgs_pass *p, const adcgs_fmodel *f, float t)
 
 void adcgs_pass_forward(adcgs_pass *p, const adcgs_fmodel *f, float t, const adcgs_pass_mode *mode)
 {
-    forward_job job = { p, f, mode, f->params.time_rows ? mode->deform : ADCGS_DEFORM_NONE };
+    forward_job job = {p, f, mode, f->params.time_rows ? mode->deform : ADCGS_DEFORM_NONE};
     p->quant = mode->quant;
     p->net = mode->bf16 ? &p->bf16 : &p->dsp;
     for (int i = ADCGS_P_THETA; i <= ADCGS_P_VARPI; i++)

@@ -21,8 +21,8 @@ typedef enum adcgs_quant {
 typedef struct adcgs_pass {
     adcgs_cpu_level cpu;
     adcgs_pool *pool;
-    adcgs_train_dsp dsp, bf16;   /**< bf16: with layers in bf16, if this CPU supports it */
-    const adcgs_train_dsp *net;  /**< kernels of F_theta, F_omega, F_varpi since the last forward pass */
+    adcgs_train_dsp dsp, bf16;  /**< bf16: with layers in bf16, if this CPU supports it */
+    const adcgs_train_dsp *net; /**< kernels of F_theta, F_omega, F_varpi since the last forward pass */
     uint32_t groups;
     float *used[ADCGS_P_ANCHOR]; /**< the networks' input, laid out as the parameters */
     float *mu[ADCGS_P_ANCHOR];   /**< predicted means for ADCGS_QUANT_ROUND, packed */
@@ -32,21 +32,21 @@ typedef struct adcgs_pass {
     float *keep;                 /**< the model's keep without dropped-out primitives: [slots] */
     float *act;                  /**< activations, act_stride floats per group */
     size_t act_stride;
-    float *scratch;              /**< scratch_stride floats per thread */
+    float *scratch; /**< scratch_stride floats per thread */
     size_t scratch_stride;
-    float *partial;              /**< network gradients, partial_stride per chunk */
+    float *partial; /**< network gradients, partial_stride per chunk */
     size_t partial_stride, partial_at[ADCGS_P_COUNT];
     int chunks;
-    double *bits;                /**< [chunk][ADCGS_GROUPS] estimated bits of the last backward pass */
-    float *prim;                 /**< primitives: [ADCGS_ROWS][slots] */
-    float *grad;                 /**< their gradients: [ADCGS_GRAD_ROWS][slots] */
+    double *bits; /**< [chunk][ADCGS_GROUPS] estimated bits of the last backward pass */
+    float *prim;  /**< primitives: [ADCGS_ROWS][slots] */
+    float *grad;  /**< their gradients: [ADCGS_GRAD_ROWS][slots] */
     adcgs_primitives primitives;
     adcgs_raster_grads grads;
-    const float *pull;           /**< added to the gradient of the anchors' translations and rotations, [group][12][64] or NULL */
-    float *time_code;            /**< columns of the time table at t: f_t, and poses */
+    const float *pull; /**< added to the gradient of the anchors' translations and rotations, [group][12][64] or NULL */
+    float *time_code;  /**< columns of the time table at t: f_t, and poses */
     adcgs_body_place pose[ADCGS_BODIES_MAX]; /**< of the bodies at t */
-    size_t partial_bodies;       /**< offset of a chunk's sums for the bodies' poses, [bodies] of adcgs_body_grad */
-    float *time_bias[2];         /**< first-layer bias of omega, varpi at this time */
+    size_t partial_bodies;                   /**< offset of a chunk's sums for the bodies' poses, [bodies] of adcgs_body_grad */
+    float *time_bias[2];                     /**< first-layer bias of omega, varpi at this time */
     float t;
 } adcgs_pass;
 
@@ -69,9 +69,9 @@ typedef enum adcgs_deform { ADCGS_DEFORM_NONE, ADCGS_DEFORM_ALL, ADCGS_DEFORM_CO
 typedef struct adcgs_pass_mode {
     adcgs_quant quant;
     adcgs_deform deform;
-    int bf16;      /**< 1: rendering networks run in bf16, here and in the backward pass; entropy networks never do */
-    float dropout; /**< share of primitives dropped at random, so that the rest does not rely on any of them */
-    uint32_t seed; /**< of noise and dropout */
+    int bf16;       /**< 1: rendering networks run in bf16, here and in the backward pass; entropy networks never do */
+    float dropout;  /**< share of primitives dropped at random, so that the rest does not rely on any of them */
+    uint32_t seed;  /**< of noise and dropout */
     int other_time; /**< 1: only the time differs from the last pass, so the outputs of F_theta are reused */
 } adcgs_pass_mode;
 

@@ -197,7 +197,7 @@ static void merge_partials(adcgs_pass *p, adcgs_fmodel *f)
 static void bodies_back(const adcgs_pass *p, adcgs_fmodel *f)
 {
     const int columns = adcgs_fmodel_time_columns(&f->params), n = (int)adcgs_pose_columns(&f->params);
-    float sum[ADCGS_BODIES_MAX * sizeof(adcgs_body_grad) / sizeof(float)] = { 0 }, d[ADCGS_BODIES_MAX * ADCGS_POSE_N];
+    float sum[ADCGS_BODIES_MAX * sizeof(adcgs_body_grad) / sizeof(float)] = {0}, d[ADCGS_BODIES_MAX * ADCGS_POSE_N];
     const size_t values = f->params.bodies * sizeof(adcgs_body_grad) / sizeof(float);
     adcgs_body_grad grad[ADCGS_BODIES_MAX];
     const adcgs_time_rows at = adcgs_fmodel_time_rows(&f->params, p->t);
@@ -216,7 +216,7 @@ static void bodies_back(const adcgs_pass *p, adcgs_fmodel *f)
 static void time_back(adcgs_pass *p, adcgs_fmodel *f)
 {
     const int width = f->params.time_width, columns = adcgs_fmodel_time_columns(&f->params);
-    const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
+    const int which[2] = {ADCGS_P_OMEGA, ADCGS_P_VARPI};
     const adcgs_time_rows at = adcgs_fmodel_time_rows(&f->params, p->t);
     float *dz = f->param[ADCGS_P_TIME].g + (size_t)at.first * (size_t)columns;
     for (int i = 0; i < 2; i++) {
@@ -248,8 +248,8 @@ static void sum_rate(const adcgs_pass *p, int period, adcgs_rate *rate)
 void adcgs_pass_backward(adcgs_pass *p, adcgs_fmodel *f, adcgs_deform deform, float rate_scale, int period, int first,
                          adcgs_rate *rate)
 {
-    backward_job job = { p, f, f->params.time_rows ? deform : ADCGS_DEFORM_NONE, rate_scale > 0 ? period : 0, first, rate_scale,
-                         0 };
+    backward_job job = {p,          f, f->params.time_rows ? deform : ADCGS_DEFORM_NONE, rate_scale > 0 ? period : 0, first,
+                        rate_scale, 0};
     adcgs_pool_run(p->pool, backward_chunk, &job, p->chunks);
     merge_partials(p, f);
     if (job.deform)
@@ -262,7 +262,7 @@ void adcgs_pass_backward(adcgs_pass *p, adcgs_fmodel *f, adcgs_deform deform, fl
 
 void adcgs_pass_rate(adcgs_pass *p, adcgs_fmodel *f, adcgs_rate *rate)
 {
-    backward_job job = { p, f, 0, 1, 0, 0, 1 };
+    backward_job job = {p, f, 0, 1, 0, 0, 1};
     p->quant = ADCGS_QUANT_ROUND;
     adcgs_pool_run(p->pool, backward_chunk, &job, p->chunks);
     sum_rate(p, 1, rate);
@@ -270,8 +270,8 @@ void adcgs_pass_rate(adcgs_pass *p, adcgs_fmodel *f, adcgs_rate *rate)
 
 void adcgs_pass_densities(adcgs_pass *p, adcgs_fmodel *f, adcgs_rate *rate)
 {
-    uint8_t best[ADCGS_GROUPS] = { 0 };
-    adcgs_rate least = { .total = 0 };
+    uint8_t best[ADCGS_GROUPS] = {0};
+    adcgs_rate least = {.total = 0};
     for (int shape = 0; shape < ADCGS_SHAPES; shape++) {
         memset(f->density, shape, sizeof f->density);
         adcgs_pass_rate(p, f, rate);

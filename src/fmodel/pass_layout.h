@@ -26,7 +26,9 @@ static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *
     const size_t k = f->params.k;
     adcgs_act a;
     float *at = p->act + (size_t)g * p->act_stride;
+/* clang-format off */
 #define TAKE(field, rows) (a.field = (void *)at, at += (size_t)(rows) * ADCGS_LANES)
+    /* clang-format on */
     a.theta_h_stride = (size_t)th->hidden * (size_t)th->width * ADCGS_LANES;
     a.theta_below_stride = adcgs_mlp_below_rows(th) * 32;
     TAKE(theta_h, k * (size_t)th->hidden * (size_t)th->width);

@@ -15,10 +15,14 @@ int adcgs_pass_factor_of(const adcgs_fmodel *f, int group, int row)
 {
     const int per_chunk = f->params.n_fg / f->params.chunks;
     switch (group) {
-    case ADCGS_P_SIGMA: return adcgs_group_steps(ADCGS_GROUP_SIGMA);
-    case ADCGS_P_COLOUR: return adcgs_group_steps(ADCGS_GROUP_COLOUR);
-    case ADCGS_P_FG: return per_chunk ? adcgs_group_steps(ADCGS_GROUP_FG + row % f->params.n_fg / per_chunk) : -1;
-    default: return -1;
+    case ADCGS_P_SIGMA:
+        return adcgs_group_steps(ADCGS_GROUP_SIGMA);
+    case ADCGS_P_COLOUR:
+        return adcgs_group_steps(ADCGS_GROUP_COLOUR);
+    case ADCGS_P_FG:
+        return per_chunk ? adcgs_group_steps(ADCGS_GROUP_FG + row % f->params.n_fg / per_chunk) : -1;
+    default:
+        return -1;
     }
 }
 

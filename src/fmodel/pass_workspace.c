@@ -2,7 +2,6 @@
 /** \file Workspace of the passes: its memory and layout. */
 #include "fmodel/pass_layout.h"
 
-
 /** Rows of hidden layers, of the signs of their branches, and of outputs. */
 static size_t rows_of(const adcgs_mlp *m)
 {
@@ -42,7 +41,7 @@ static void free_groups(adcgs_pass *p)
         adcgs_free(NULL, p->mu[i]);
         p->used[i] = p->mu[i] = NULL;
     }
-    float **const arrays[] = { &p->factor, &p->keep, &p->act, &p->prim, &p->grad };
+    float **const arrays[] = {&p->factor, &p->keep, &p->act, &p->prim, &p->grad};
     for (size_t i = 0; i < ADCGS_COUNTOF(arrays); i++) {
         adcgs_free(NULL, *arrays[i]);
         *arrays[i] = NULL;
@@ -57,7 +56,7 @@ static size_t scratch_rows(const adcgs_fmodel *f)
     const size_t theta = k * ADCGS_THETA_OUT + (size_t)(th->width * (1 + th->hidden));
     const size_t deform = (size_t)(om->out + va->out + om->width * om->hidden + va->width * va->hidden);
     const size_t w = (size_t)f->shape.entropy_width * (size_t)(f->shape.entropy_hidden + 1),
-        out = 2 * (nv > ng + 6 ? nv : ng + 6);
+                 out = 2 * (nv > ng + 6 ? nv : ng + 6);
     const size_t below = (w + 31) / 32;
     const size_t rate = 2 * nv + k * ng + f->params.n_eta * 2u + k * (3 * w + below + 2 * out) + 2 * w + ng + 64;
     return theta + deform > rate ? theta + deform : rate;
@@ -78,7 +77,7 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
     const size_t k = f->params.k;
     const adcgs_mlp *theta = &m[ADCGS_P_THETA], *steps = &m[ADCGS_P_E_STEPS];
     p->act_stride = ADCGS_LANES * (k * rows_of(theta) + rows_of(&m[ADCGS_P_OMEGA]) + rows_of(&m[ADCGS_P_VARPI]) + rows_of(steps) +
-                          (size_t)steps->out);
+                                   (size_t)steps->out);
     p->scratch_stride = ADCGS_LANES * scratch_rows(f);
     size_t at = 0;
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {

@@ -92,8 +92,7 @@ static void net_tail(const job *j, const adcgs_mlp *m, float *z, float *h, uint6
             dsp->dense.dense(z, NULL, m->use + m->b[i], m->use + m->w[i], (size_t)m->width, h - tile, m->width, m->width);
         (j->exact ? dsp->hidden_exact : dsp->hidden)(h, below, z, i > 0 ? h - tile : NULL, m->width);
     }
-    dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width, h - tile, m->out,
-                     m->width);
+    dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width, h - tile, m->out, m->width);
 }
 
 /** Coded rows: `count` rows from row `first` of a parameter group in this group of anchors. */
@@ -174,8 +173,8 @@ static void exact_factors(const job *j, float *scratch)
     j->p->dsp.dense.dense(t.z, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], j->xv, m->width, m->in[0]);
     net_tail(j, m, t.z, t.h, t.below, t.out);
     for (int i = 0; i < m->out * ADCGS_LANES; i++)
-        factor[i] = adcgs_step_factor((int)adcgs_bounded(floorf(ADCGS_STEP_GAIN * t.out[i] + 0.5f), -ADCGS_STEP_INDEX_MAX,
-                                                         ADCGS_STEP_INDEX_MAX));
+        factor[i] = adcgs_step_factor(
+            (int)adcgs_bounded(floorf(ADCGS_STEP_GAIN * t.out[i] + 0.5f), -ADCGS_STEP_INDEX_MAX, ADCGS_STEP_INDEX_MAX));
 }
 
 /** One network on one tile: forward, bits, backward; dx accumulates the gradient of the input, [in][64]. */
@@ -234,8 +233,12 @@ static void rate_chunk(const job *j, int c, float *partial, float *scratch)
         float *z = t.z + (size_t)i * t.sh, *h = t.h + (size_t)i * t.sh, *dz = t.dz + (size_t)i * t.sh;
         uint64_t *below = t.below + (size_t)i * t.sbelow;
         float *out = t.out + (size_t)i * t.sout, *dout = t.dout + (size_t)i * t.sout, *xg = j->xg + (size_t)i * fg_tile;
-        const coded values = { ADCGS_P_FG, i * ng + before, per, (adcgs_group)(ADCGS_GROUP_FG + c),
-                               j->f->keep + slot * ADCGS_LANES, xg + (size_t)before * ADCGS_LANES };
+        const coded values = {ADCGS_P_FG,
+                              i * ng + before,
+                              per,
+                              (adcgs_group)(ADCGS_GROUP_FG + c),
+                              j->f->keep + slot * ADCGS_LANES,
+                              xg + (size_t)before * ADCGS_LANES};
         dsp->dense.dense(z, anchor, NULL, m->use + nv, (size_t)m->in[0], xg, w, before);
         net_tail(j, m, z, h, below, out);
         rate_rows(j, &values, out, dout);
@@ -271,7 +274,7 @@ void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, floa
                       double *bits)
 {
     const int nv = f->params.n_fv, ng = f->params.n_fg, ne = f->params.n_eta, k = f->params.k;
-    job j = { p, f, group, p->quant == ADCGS_QUANT_ROUND, scale, NULL, NULL, NULL, NULL, NULL, bits };
+    job j = {p, f, group, p->quant == ADCGS_QUANT_ROUND, scale, NULL, NULL, NULL, NULL, NULL, bits};
     j.xv = scratch;
     j.dxv = j.xv + nv * ADCGS_LANES;
     j.xe = j.dxv + nv * ADCGS_LANES;
@@ -279,9 +282,9 @@ void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, floa
     j.xg = j.dxe + ne * ADCGS_LANES;
     float *rest = j.xg + (size_t)k * (size_t)ng * ADCGS_LANES;
     const float *live = f->live + (size_t)group * ADCGS_LANES;
-    const coded eta = { ADCGS_P_ETA, 0, ne, ADCGS_GROUP_ETA, live, j.xe }, fv = { ADCGS_P_FV, 0, nv, ADCGS_GROUP_FV, live, j.xv };
-    const coded sigma = { ADCGS_P_SIGMA, 0, adcgs_sigma_rows(&f->params), ADCGS_GROUP_SIGMA, live, NULL };
-    const coded colour = { ADCGS_P_COLOUR, 0, ADCGS_COLOUR_N, ADCGS_GROUP_COLOUR, live, NULL };
+    const coded eta = {ADCGS_P_ETA, 0, ne, ADCGS_GROUP_ETA, live, j.xe}, fv = {ADCGS_P_FV, 0, nv, ADCGS_GROUP_FV, live, j.xv};
+    const coded sigma = {ADCGS_P_SIGMA, 0, adcgs_sigma_rows(&f->params), ADCGS_GROUP_SIGMA, live, NULL};
+    const coded colour = {ADCGS_P_COLOUR, 0, ADCGS_COLOUR_N, ADCGS_GROUP_COLOUR, live, NULL};
     memset(j.dxv, 0, (size_t)nv * ADCGS_LANES * sizeof *j.dxv);
     memset(j.dxe, 0, (size_t)ne * ADCGS_LANES * sizeof *j.dxe);
     if (ne)

@@ -44,8 +44,8 @@ static void consider(const adcgs_fmodel *f, uint32_t i, uint32_t j, uint64_t rea
     }
     keep_best(best, near, ADCGS_RIGIDITY_CLOSE, d, j);
     if (d < reach2)
-        keep_best(best + ADCGS_RIGIDITY_CLOSE, near + ADCGS_RIGIDITY_CLOSE, NEAR - ADCGS_RIGIDITY_CLOSE,
-                  adcgs_random64(1, i, j), j);
+        keep_best(best + ADCGS_RIGIDITY_CLOSE, near + ADCGS_RIGIDITY_CLOSE, NEAR - ADCGS_RIGIDITY_CLOSE, adcgs_random64(1, i, j),
+                  j);
 }
 
 /** Finds the closest anchors, and a fixed random selection of those within reach. rank: the anchor's rank along x. */
@@ -107,7 +107,7 @@ adcgs_status adcgs_rigidity_build(adcgs_rigidity *rigid, const adcgs_fmodel *f, 
     for (uint32_t i = 0; i < f->n; i++)
         along[i] = (uint64_t)f->pos[i][0] << 32 | i;
     qsort(along, f->n, sizeof *along, by_value);
-    near_job job = { f, rigid, along };
+    near_job job = {f, rigid, along};
     adcgs_pool_run(pool, near_group, &job, (int)f->groups);
     adcgs_free(NULL, along);
     return ADCGS_OK;
@@ -184,7 +184,7 @@ double adcgs_rigidity_pull(adcgs_rigidity *rigid, const adcgs_pass *p, const adc
             if (rigid->near[i][k] < 0 || f->moving[j] == 0)
                 continue;
             const float *dj = omega_of(p, f, j), *y = f->x + (size_t)(j / ADCGS_LANES) * 3 * ADCGS_LANES + j % ADCGS_LANES;
-            const float v[3] = { y[0] - x[0], y[ADCGS_LANES] - x[ADCGS_LANES], y[2 * ADCGS_LANES] - x[2 * ADCGS_LANES] };
+            const float v[3] = {y[0] - x[0], y[ADCGS_LANES] - x[ADCGS_LANES], y[2 * ADCGS_LANES] - x[2 * ADCGS_LANES]};
             float force[3];
             turn_of(turns ? dj + 9 * ADCGS_LANES : NULL, n);
             energy += pair(y, di, dj, m, n, v, force);

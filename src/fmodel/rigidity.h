@@ -16,7 +16,7 @@
 
 typedef struct adcgs_rigidity {
     uint32_t n;                           /**< anchors */
-    int32_t (*near)[ADCGS_RIGIDITY_NEAR];    /**< [n] other anchors; -1 if there are fewer */
+    int32_t (*near)[ADCGS_RIGIDITY_NEAR]; /**< [n] other anchors; -1 if there are fewer */
     float *pull;                          /**< [group][12][64]: gradient of the translation and of the rotation matrix */
 } adcgs_rigidity;
 

@@ -20,7 +20,7 @@ static float distance2(const float a[3], const float b[3])
 /** Adds the midpoints between a camera and its two nearest other cameras. */
 static void add_between(adcgs_viewpoints *p, uint32_t n, uint32_t i)
 {
-    uint32_t best[2] = { i, i };
+    uint32_t best[2] = {i, i};
     for (uint32_t j = 0; j < n; j++) {
         const float d = distance2(p->x[i], p->x[j]);
         if (j == i)
@@ -59,7 +59,7 @@ adcgs_status adcgs_viewpoints_create(adcgs_viewpoints *p, const float (*camera)[
 void adcgs_viewpoints_clear(adcgs_viewpoints *p)
 {
     adcgs_free(NULL, p->x);
-    *p = (adcgs_viewpoints){ .n = 0 };
+    *p = (adcgs_viewpoints){.n = 0};
 }
 
 /**
@@ -84,7 +84,7 @@ static void nearness(float near[PIECE], const adcgs_viewpoints *p, const adcgs_p
 }
 
 double adcgs_scale_penalty(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
-                        float *const scale[3])
+                           float *const scale[3])
 {
     const float *x = primitives->scale[0], *y = primitives->scale[1], *z = primitives->scale[2];
     uint32_t n = 0;

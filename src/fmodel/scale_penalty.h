@@ -27,6 +27,6 @@ void adcgs_viewpoints_clear(adcgs_viewpoints *viewpoints);
  * Adds its gradient with respect to the scales to scale[3], and returns the penalty.
  */
 double adcgs_scale_penalty(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
-                        float *const scale[3]);
+                           float *const scale[3]);
 
 #endif

@@ -45,5 +45,5 @@ void adcgs_weight_average_take(adcgs_weight_average *a, adcgs_fmodel *f)
 void adcgs_weight_average_clear(adcgs_weight_average *a)
 {
     adcgs_free(NULL, a->mean);
-    *a = (adcgs_weight_average){ .n = 0 };
+    *a = (adcgs_weight_average){.n = 0};
 }

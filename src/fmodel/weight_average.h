@@ -11,9 +11,9 @@
 
 /** Zero-initialise before use. */
 typedef struct adcgs_weight_average {
-    uint32_t n;   /**< number of iterations */
-    size_t size;  /**< number of parameters */
-    float *mean;  /**< [size], groups one after the other */
+    uint32_t n;  /**< number of iterations */
+    size_t size; /**< number of parameters */
+    float *mean; /**< [size], groups one after the other */
 } adcgs_weight_average;
 
 /** Resets the mean, with room for f's parameters. */

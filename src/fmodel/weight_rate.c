@@ -61,7 +61,7 @@ static double rate_row(const tensor *t, const float *w, float *g, const float *c
 
 static double rate_tensor(const tensor *t, float scale)
 {
-    float column[COLUMNS_MAX] = { 0 }, by_width[COLUMNS_MAX] = { 0 };
+    float column[COLUMNS_MAX] = {0}, by_width[COLUMNS_MAX] = {0};
     const size_t cols = (size_t)t->cols;
     double bits = 0;
     if (!t->rows || !t->cols)
@@ -91,8 +91,8 @@ double adcgs_weight_rate(adcgs_fmodel *f, int group, float scale)
         const int e = m->weight_step[l] == ADCGS_WEIGHT_STEP_NONE ? ADCGS_E24_BITS : m->weight_step[l];
         const size_t end = l < m->hidden ? m->w[l + 1] : m->n;
         const float half = ldexpf(0.5f, -e);
-        const tensor w = { p + m->w[l], g ? g + m->w[l] : NULL, m->n_out[l], m->in[l], half, half };
-        const tensor b = { p + m->b[l], g ? g + m->b[l] : NULL, (int)(end - m->b[l]), 1, half, half };
+        const tensor w = {p + m->w[l], g ? g + m->w[l] : NULL, m->n_out[l], m->in[l], half, half};
+        const tensor b = {p + m->b[l], g ? g + m->b[l] : NULL, (int)(end - m->b[l]), 1, half, half};
         bits += rate_tensor(&w, scale) + rate_tensor(&b, scale);
     }
     return bits;

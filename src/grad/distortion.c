@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-static const float black[3] = { 0, 0, 0 };
+static const float black[3] = {0, 0, 0};
 /** Minimum coverage of a pixel; below it, the variance of depth is meaningless. */
 static const float COVER_LEAST = 0.01f;
 
@@ -13,7 +13,7 @@ void adcgs_distortion_clear(adcgs_distortion *d)
     adcgs_free(NULL, d->rows);
     adcgs_free(NULL, d->depth);
     adcgs_free(NULL, d->image);
-    *d = (adcgs_distortion){ .slots = 0 };
+    *d = (adcgs_distortion){.slots = 0};
 }
 
 static adcgs_status make_room(adcgs_distortion *d, size_t slots, size_t pixels, adcgs_error *error)
@@ -42,8 +42,8 @@ static float inverse_depths(const adcgs_primitives *p, const adcgs_view *v, floa
     double sum = 0;
     size_t seen = 0;
     for (size_t i = 0; i < p->n; i++) {
-        const float z = v->rotation[6] * p->mean[0][i] + v->rotation[7] * p->mean[1][i] + v->rotation[8] * p->mean[2][i] +
-                        v->translation[2];
+        const float z =
+            v->rotation[6] * p->mean[0][i] + v->rotation[7] * p->mean[1][i] + v->rotation[8] * p->mean[2][i] + v->translation[2];
         const int can = z > v->near_plane && p->opacity[i] > 0;
         inverse[i] = can ? 1 / z : 0;
         sum += (double)inverse[i];

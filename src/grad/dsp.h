@@ -29,18 +29,18 @@ typedef struct adcgs_body_grad {
 /** One group of 64 anchors and its 64*k primitives. */
 typedef struct adcgs_group_io {
     int k;
-    const float *x;      /**< [3][64] anchor positions */
-    const float *sigma;  /**< [6][64]; with lifetimes [11][64] */
-    int spans;           /**< 1: lifetimes are in use, at time t */
+    const float *x;     /**< [3][64] anchor positions */
+    const float *sigma; /**< [6][64]; with lifetimes [11][64] */
+    int spans;          /**< 1: lifetimes are in use, at time t */
     float t;
-    const float *colour; /**< [3][64] */
-    const float *theta;  /**< [k][14][64] */
-    const float *omega;  /**< [12][64] (9 used without rotation) or NULL */
-    const float *varpi;  /**< [4k][64] or NULL */
-    const float *moving; /**< [64] 1 for moving, 0 for static anchors; read when omega or varpi is given, or spans */
-    const float *keep;   /**< [k][64] 1 for primitives that exist, else 0 */
-    int rotation;        /**< omega's outputs 9..11 are used */
-    const uint8_t *body; /**< [64] rigid body of a moving anchor, from 1; 0: none; or NULL */
+    const float *colour;          /**< [3][64] */
+    const float *theta;           /**< [k][14][64] */
+    const float *omega;           /**< [12][64] (9 used without rotation) or NULL */
+    const float *varpi;           /**< [4k][64] or NULL */
+    const float *moving;          /**< [64] 1 for moving, 0 for static anchors; read when omega or varpi is given, or spans */
+    const float *keep;            /**< [k][64] 1 for primitives that exist, else 0 */
+    int rotation;                 /**< omega's outputs 9..11 are used */
+    const uint8_t *body;          /**< [64] rigid body of a moving anchor, from 1; 0: none; or NULL */
     const adcgs_body_place *pose; /**< [bodies] */
     float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] each */
 } adcgs_group_io;
@@ -48,10 +48,10 @@ typedef struct adcgs_group_io {
 /** Gradients of the same: input from the rasteriser, output for the networks. */
 typedef struct adcgs_group_grad {
     const float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] */
-    float *sigma, *colour;        /**< as io's, accumulated */
-    float *theta, *omega, *varpi; /**< overwritten; omega, varpi may be NULL as above */
-    const float *pull;            /**< [12][64] additional gradient of omega's translation and rotation matrix, or NULL */
-    adcgs_body_grad *body;        /**< [bodies], accumulated; if io has bodies */
+    float *sigma, *colour;                                       /**< as io's, accumulated */
+    float *theta, *omega, *varpi;                                /**< overwritten; omega, varpi may be NULL as above */
+    const float *pull;     /**< [12][64] additional gradient of omega's translation and rotation matrix, or NULL */
+    adcgs_body_grad *body; /**< [bodies], accumulated; if io has bodies */
 } adcgs_group_grad;
 
 /** Cost of a value of magnitude `a` at a sigma level, by the coder's tables. */
@@ -72,14 +72,14 @@ void adcgs_rate_table_init(adcgs_rate_table *table, int shape);
 /** Rows of 64 values to code, with an entropy network's outputs. */
 typedef struct adcgs_rate_io {
     int n;
-    const float *y, *step;  /**< values [n][64], steps [n] */
-    const float *mu, *si;   /**< the network's outputs: [n][64] in 16 steps, [n][64] in 8 sigma levels around level 32 */
-    const float *weight;    /**< [64] of each lane, 0 for padding */
+    const float *y, *step; /**< values [n][64], steps [n] */
+    const float *mu, *si;  /**< the network's outputs: [n][64] in 16 steps, [n][64] in 8 sigma levels around level 32 */
+    const float *weight;   /**< [64] of each lane, 0 for padding */
     float scale;
-    float *dy, *dmu, *dsi;  /**< dy += scale*dbits/dy; dmu, dsi overwritten with scale*dbits/dmu, /dsi */
-    float *x;               /**< receives the values as inputs of later networks; may be NULL */
+    float *dy, *dmu, *dsi;         /**< dy += scale*dbits/dy; dmu, dsi overwritten with scale*dbits/dmu, /dsi */
+    float *x;                      /**< receives the values as inputs of later networks; may be NULL */
     const adcgs_rate_table *table; /**< rate_exact: of the group's shape */
-    float *mean;            /**< rate_exact: receives the means, packed */
+    float *mean;                   /**< rate_exact: receives the means, packed */
 } adcgs_rate_io;
 
 /** Weights of a residual layer, [n][n], and their form after adcgs_train_dsp.pack, if that exists. */

@@ -76,8 +76,8 @@ INLINE void product_tile(int rows, int cols, const sums *s, const uint32_t *a, s
     for (int r = 0; r < rows; r++)
 #pragma GCC unroll 4
         for (int c = 0; c < cols; c++)
-            acc[r][c] = s->from ? _mm512_maskz_loadu_ps(c < cols - 1 ? 0xffff : last, s->from + (size_t)r * s->ld + c * VN) :
-                                  _mm512_set1_ps(s->bias ? s->bias[r] : 0.0f);
+            acc[r][c] = s->from ? _mm512_maskz_loadu_ps(c < cols - 1 ? 0xffff : last, s->from + (size_t)r * s->ld + c * VN)
+                                : _mm512_set1_ps(s->bias ? s->bias[r] : 0.0f);
     for (int p = 0; p < pairs; p++) {
         __m512i column[COLS];
 #pragma GCC unroll 4
@@ -102,22 +102,42 @@ INLINE void product_tile(int rows, int cols, const sums *s, const uint32_t *a, s
 INLINE void product_rows(int rows, const sums *s, const uint32_t *a, size_t lda, const columns *b, int pairs)
 {
     switch ((s->n + VN - 1) / VN) {
-    case 4: product_tile(rows, 4, s, a, lda, b, pairs); break;
-    case 3: product_tile(rows, 3, s, a, lda, b, pairs); break;
-    case 2: product_tile(rows, 2, s, a, lda, b, pairs); break;
-    default: product_tile(rows, 1, s, a, lda, b, pairs); break;
+    case 4:
+        product_tile(rows, 4, s, a, lda, b, pairs);
+        break;
+    case 3:
+        product_tile(rows, 3, s, a, lda, b, pairs);
+        break;
+    case 2:
+        product_tile(rows, 2, s, a, lda, b, pairs);
+        break;
+    default:
+        product_tile(rows, 1, s, a, lda, b, pairs);
+        break;
     }
 }
 
 static void product(int rows, const sums *s, const uint32_t *a, size_t lda, const columns *b, int pairs)
 {
     switch (rows) {
-    case 6: product_rows(6, s, a, lda, b, pairs); break;
-    case 5: product_rows(5, s, a, lda, b, pairs); break;
-    case 4: product_rows(4, s, a, lda, b, pairs); break;
-    case 3: product_rows(3, s, a, lda, b, pairs); break;
-    case 2: product_rows(2, s, a, lda, b, pairs); break;
-    default: product_rows(1, s, a, lda, b, pairs); break;
+    case 6:
+        product_rows(6, s, a, lda, b, pairs);
+        break;
+    case 5:
+        product_rows(5, s, a, lda, b, pairs);
+        break;
+    case 4:
+        product_rows(4, s, a, lda, b, pairs);
+        break;
+    case 3:
+        product_rows(3, s, a, lda, b, pairs);
+        break;
+    case 2:
+        product_rows(2, s, a, lda, b, pairs);
+        break;
+    default:
+        product_rows(1, s, a, lda, b, pairs);
+        break;
     }
 }
 
@@ -199,8 +219,8 @@ static void layer(const sums *y, const weights *w, const float *x, int n_out, in
         for (int o = 0, rows; o < n_out; o += rows) {
             const size_t at = (size_t)o * LANES;
             const int ends = y->in && i + n == n_in;
-            const sums s = { y->to + at, init ? init + at : NULL, y->bias ? y->bias + o : NULL, LANES, LANES,
-                             ends ? y->in + at : NULL, ends ? y->below + o : NULL };
+            const sums s = {y->to + at, init ? init + at : NULL,  y->bias ? y->bias + o : NULL, LANES,
+                            LANES,      ends ? y->in + at : NULL, ends ? y->below + o : NULL};
             rows = rows_next(n_out - o);
             if (soon && i == 0)
                 fetch(2, soon + 2 * at, LANES, 2 * rows, LANES);
@@ -219,13 +239,13 @@ static void layer(const sums *y, const weights *w, const float *x, int n_out, in
 
 static void dense(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in)
 {
-    layer(&(sums){ y, init, bias, LANES, LANES, NULL, NULL }, &(weights){ w, ldw, NULL }, x, n_out, n_in, NULL);
+    layer(&(sums){y, init, bias, LANES, LANES, NULL, NULL}, &(weights){w, ldw, NULL}, x, n_out, n_in, NULL);
 }
 
 static void residual(const adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
                      const float *x)
 {
-    layer(&(sums){ h, NULL, bias, LANES, LANES, x, below }, &(weights){ .packed = w->packed }, x, w->n, w->n, NULL);
+    layer(&(sums){h, NULL, bias, LANES, LANES, x, below}, &(weights){.packed = w->packed}, x, w->n, w->n, NULL);
 }
 
 static void residual_back(const adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below, const adcgs_square *turn,
@@ -236,7 +256,7 @@ static void residual_back(const adcgs_train_dsp *dsp, float *dx, float *dz, cons
             const size_t at = (size_t)i * LANES + (size_t)(c * VN);
             _mm512_store_ps(dz + at, slope(_mm512_load_ps(dh + at), (__mmask16)(below[i] >> c * VN)));
         }
-    layer(&(sums){ dx, dh, NULL, LANES, LANES, NULL, NULL }, &(weights){ .packed = turn->packed }, dz, turn->n, turn->n, io);
+    layer(&(sums){dx, dh, NULL, LANES, LANES, NULL, NULL}, &(weights){.packed = turn->packed}, dz, turn->n, turn->n, io);
 }
 
 static void pack(uint32_t *to, const float *w, int n)
@@ -295,7 +315,7 @@ static void tile_grad(float *gw, size_t ldg, float *gb, const float *dy, const f
         turn_inputs(&inputs, x + (size_t)i * LANES, n_in - i < LANES ? n_in - i : LANES);
         for (int o = 0, rows; o < n_out; o += rows) {
             float *at = gw + (size_t)o * ldg + i;
-            const sums s = { at, at, NULL, ldg, n_in - i < LANES ? n_in - i : LANES, NULL, NULL };
+            const sums s = {at, at, NULL, ldg, n_in - i < LANES ? n_in - i : LANES, NULL, NULL};
             rows = rows_next(n_out - o);
             if (o + rows < n_out)
                 fetch(1, at + (size_t)rows * ldg, ldg, rows_next(n_out - o - rows), s.n);

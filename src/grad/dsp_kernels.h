@@ -56,7 +56,9 @@ typedef float vec;
 #define vfma(a, b, c) ((a) * (b) + (c))
 #define vadd(a, b) ((a) + (b))
 #define vbelow(x) ((uint64_t)((x) < 0))
+/* clang-format off */
 #define vslope(x, below) ((below) & 1 ? (x) * 0x1p-6f : (x))
+/* clang-format on */
 #endif
 
 /* Outputs and vectors of inputs whose products stay in registers during the loop over lanes. */
@@ -106,8 +108,8 @@ static inline __attribute__((always_inline)) void sum_lanes(float *gb, const flo
                 row[i] = _mm256_add_ps(row[i], _mm256_load_ps(dy + i * LANES + l));
 #pragma GCC unroll 4
     for (int i = 0; i < 4; i++)
-        half[i] = _mm256_add_ps(_mm256_permute2f128_ps(row[i], row[i + 4], 0x20),
-                                _mm256_permute2f128_ps(row[i], row[i + 4], 0x31));
+        half[i] =
+            _mm256_add_ps(_mm256_permute2f128_ps(row[i], row[i + 4], 0x20), _mm256_permute2f128_ps(row[i], row[i + 4], 0x31));
     _mm256_storeu_ps(sums, _mm256_hadd_ps(_mm256_hadd_ps(half[0], half[1]), _mm256_hadd_ps(half[2], half[3])));
     for (int i = 0; i < n; i++)
         gb[i] += sums[i];
@@ -176,12 +178,24 @@ static inline __attribute__((always_inline)) void weight_rows(float *gw, size_t 
                                                               int no, int nv, int ni)
 {
     switch (no) {
-    case 6: weight_tile(gw, ldg, dy, xt, 6, nv, ni); break;
-    case 5: weight_tile(gw, ldg, dy, xt, 5, nv, ni); break;
-    case 4: weight_tile(gw, ldg, dy, xt, 4, nv, ni); break;
-    case 3: weight_tile(gw, ldg, dy, xt, 3, nv, ni); break;
-    case 2: weight_tile(gw, ldg, dy, xt, 2, nv, ni); break;
-    default: weight_tile(gw, ldg, dy, xt, 1, nv, ni); break;
+    case 6:
+        weight_tile(gw, ldg, dy, xt, 6, nv, ni);
+        break;
+    case 5:
+        weight_tile(gw, ldg, dy, xt, 5, nv, ni);
+        break;
+    case 4:
+        weight_tile(gw, ldg, dy, xt, 4, nv, ni);
+        break;
+    case 3:
+        weight_tile(gw, ldg, dy, xt, 3, nv, ni);
+        break;
+    case 2:
+        weight_tile(gw, ldg, dy, xt, 2, nv, ni);
+        break;
+    default:
+        weight_tile(gw, ldg, dy, xt, 1, nv, ni);
+        break;
     }
 }
 
@@ -193,11 +207,19 @@ static void weight_columns(float *gw, size_t ldg, const float *dy, float xt[LANE
         no = (n_out - o + groups - g - 1) / (groups - g);
         switch ((ni + VN - 1) / VN) {
 #if VN == 16
-        case 4: weight_rows(gw, ldg, dy, xt, no, 4, ni); break;
-        case 3: weight_rows(gw, ldg, dy, xt, no, 3, ni); break;
+        case 4:
+            weight_rows(gw, ldg, dy, xt, no, 4, ni);
+            break;
+        case 3:
+            weight_rows(gw, ldg, dy, xt, no, 3, ni);
+            break;
 #endif
-        case 2: weight_rows(gw, ldg, dy, xt, no, 2, ni); break;
-        default: weight_rows(gw, ldg, dy, xt, no, 1, ni); break;
+        case 2:
+            weight_rows(gw, ldg, dy, xt, no, 2, ni);
+            break;
+        default:
+            weight_rows(gw, ldg, dy, xt, no, 1, ni);
+            break;
         }
     }
 }
@@ -247,8 +269,8 @@ static void ISA(residual)(const adcgs_train_dsp *dsp, float *h, uint64_t *below,
     }
 }
 
-static void ISA(residual_back)(const adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below,
-                               const adcgs_square *turn, const float *dh, const float *io)
+static void ISA(residual_back)(const adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below, const adcgs_square *turn,
+                               const float *dh, const float *io)
 {
     const int n = turn->n;
     for (int i = 0; i < n; i++)
@@ -283,19 +305,19 @@ static void ISA(round)(float *restrict y, const float *restrict p, const float *
 /* ---- From network outputs to primitives, and back. The forward formulas are those of spec clause "Primitives". ---- */
 
 /** Rotation matrix of a unit quaternion, row-major, per lane. */
-#define ROTATION(r, w, x, y, z)                                                                              \
-    const float r##00 = 1 - 2 * (y * y + z * z), r##01 = 2 * (x * y - w * z), r##02 = 2 * (x * z + w * y);   \
-    const float r##10 = 2 * (x * y + w * z), r##11 = 1 - 2 * (x * x + z * z), r##12 = 2 * (y * z - w * x);   \
+#define ROTATION(r, w, x, y, z)                                                                            \
+    const float r##00 = 1 - 2 * (y * y + z * z), r##01 = 2 * (x * y - w * z), r##02 = 2 * (x * z + w * y); \
+    const float r##10 = 2 * (x * y + w * z), r##11 = 1 - 2 * (x * x + z * z), r##12 = 2 * (y * z - w * x); \
     const float r##20 = 2 * (x * z - w * y), r##21 = 2 * (y * z + w * x), r##22 = 1 - 2 * (x * x + y * y)
 
 /** Values of an anchor shared by its primitives. */
 typedef struct anchor_terms {
-    float extent[3][LANES], base[3][LANES]; /* exp(Sigma_v) */
+    float extent[3][LANES], base[3][LANES];               /* exp(Sigma_v) */
     float move[3][LANES], grow[3][LANES], tint[3][LANES]; /* deltas of F_omega */
-    float own[4][LANES];                    /* rotation by F_omega */
-    float q[4][LANES];                      /* total rotation, with the body's */
-    float body[4][LANES], from[3][LANES];   /* rotation of the body; translation before it, minus the body's centre */
-    float norm[LANES];                      /* length of (1, r) */
+    float own[4][LANES];                                  /* rotation by F_omega */
+    float q[4][LANES];                                    /* total rotation, with the body's */
+    float body[4][LANES], from[3][LANES];         /* rotation of the body; translation before it, minus the body's centre */
+    float norm[LANES];                            /* length of (1, r) */
     float pace[LANES], u[LANES], presence[LANES]; /* of lifetimes */
 } anchor_terms;
 
@@ -322,11 +344,13 @@ static void ISA(span_forward)(anchor_terms *a, const adcgs_group_io *io)
 }
 
 /* Products of quaternions: a b, conj(a) b, or a conj(b). */
+/* clang-format off */
 #define PRODUCT(c, a, b, i, j)                                                                        \
     const float c##0 = a##0 * b##0 - (i) * (j) * (a##1 * b##1 + a##2 * b##2 + a##3 * b##3);           \
     const float c##1 = (j) * a##0 * b##1 + (i) * a##1 * b##0 + (i) * (j) * (a##2 * b##3 - a##3 * b##2); \
     const float c##2 = (j) * a##0 * b##2 + (i) * a##2 * b##0 + (i) * (j) * (a##3 * b##1 - a##1 * b##3); \
     const float c##3 = (j) * a##0 * b##3 + (i) * a##3 * b##0 + (i) * (j) * (a##1 * b##2 - a##2 * b##1)
+/* clang-format on */
 #define QUATERNION(name, from) const float name##0 = from[0][l], name##1 = from[1][l], name##2 = from[2][l], name##3 = from[3][l]
 
 /** Moves and rotates anchors with their rigid bodies. */
@@ -334,7 +358,7 @@ static void ISA(body_forward)(anchor_terms *a, const adcgs_group_io *io)
 {
     float to[3][LANES];
     for (int l = 0; l < LANES; l++) {
-        static const adcgs_body_place still = { .q = { 1, 0, 0, 0 } };
+        static const adcgs_body_place still = {.q = {1, 0, 0, 0}};
         const adcgs_body_place *p = io->body[l] && io->moving[l] != 0 ? &io->pose[io->body[l] - 1] : &still;
         for (int c = 0; c < 4; c++)
             a->body[c][l] = p->q[c];
@@ -401,7 +425,7 @@ static void ISA(primitives)(const adcgs_group_io *io)
         const float *restrict va = io->varpi ? io->varpi + (size_t)k * ADCGS_VARPI_OUT * LANES : NULL;
         const float *restrict keep = io->keep + k * LANES;
         float *restrict m0 = io->mean[0] + k * LANES, *restrict m1 = io->mean[1] + k * LANES,
-            *restrict m2 = io->mean[2] + k * LANES;
+                        *restrict m2 = io->mean[2] + k * LANES;
         for (int l = 0; l < LANES; l++) {
             const float ox = th[l] * a.extent[0][l], oy = th[LANES + l] * a.extent[1][l], oz = th[2 * LANES + l] * a.extent[2][l];
             const float w = a.q[0][l], x = a.q[1][l], y = a.q[2][l], z = a.q[3][l];
@@ -456,7 +480,7 @@ static void ISA(primitive_mean_back)(const anchor_terms *a, anchor_grads *s, con
     const float *restrict th = io->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
     float *restrict dt = g->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
     const float *restrict g0 = g->mean[0] + k * LANES, *restrict g1 = g->mean[1] + k * LANES,
-        *restrict g2 = g->mean[2] + k * LANES;
+                          *restrict g2 = g->mean[2] + k * LANES;
     float *restrict ds = g->sigma;
     for (int l = 0; l < LANES; l++) {
         const float ox = th[l] * a->extent[0][l], oy = th[LANES + l] * a->extent[1][l], oz = th[2 * LANES + l] * a->extent[2][l];
@@ -569,7 +593,7 @@ static void ISA(body_back)(const anchor_terms *a, anchor_grads *s, const adcgs_g
         PRODUCT(e, d, o, 1, -1);
         PRODUCT(f, b, d, -1, 1);
         const float x = s->move[0][l], y = s->move[1][l], z = s->move[2][l];
-        const float v[3] = { a->from[0][l], a->from[1][l], a->from[2][l] }, way[3] = { x, y, z };
+        const float v[3] = {a->from[0][l], a->from[1][l], a->from[2][l]}, way[3] = {x, y, z};
         for (int i = 0; i < 3; i++) {
             const float m0 = s->m[3 * i][l], m1 = s->m[3 * i + 1][l], m2 = s->m[3 * i + 2][l];
             sums[3 * i][l] = m0 * w00 + m1 * w01 + m2 * w02 + way[i] * v[0];
@@ -688,7 +712,7 @@ static void ISA(rate_row)(float *restrict bits, float *restrict gv, float *restr
                           const float *restrict level_row)
 {
     const float log2_ratio = 0.145784517f; /* log2(64/0.11)/63: sigma levels are 2^0.1458 apart */
-    const float level0 = -3.18442457f;    /* log2(0.11) */
+    const float level0 = -3.18442457f;     /* log2(0.11) */
     for (int l = 0; l < LANES; l++) {
         const float v = v_row[l], av = v < 0 ? -v : v, level = adcgs_clampf(level_row[l], 0, 63);
         const float inv_sigma = adcgs_exp(-0.69314718f * (level * log2_ratio + level0));

@@ -111,16 +111,22 @@ adcgs_status adcgs_loss_image(adcgs_loss *loss, const float *image, const float 
     const size_t plane = (size_t)width * (size_t)height;
     const float errors = (1.0f - shares->ssim) * (float)(1.0 / (CHANNELS * (double)plane));
     const int bands = shares->ssim == 0.0f, length = bands ? height : width;
-    const int unit = unit_size(length, bands ? ADCGS_MAX(BAND, height / 64)
-                                             : width > ADCGS_LOSS_SPAN ? ADCGS_LOSS_STRIP : ADCGS_LOSS_SPAN);
+    const int unit = unit_size(length, bands                     ? ADCGS_MAX(BAND, height / 64)
+                                       : width > ADCGS_LOSS_SPAN ? ADCGS_LOSS_STRIP
+                                                                 : ADCGS_LOSS_SPAN);
     int n = 0;
     for (int c = 0; c < CHANNELS; c++)
         for (int first = 0; first < length; first += unit)
-            loss->strip[n++] = (adcgs_loss_strip){
-                .image = image + (size_t)c * plane, .target = target + (size_t)c * plane, .grad = grad + (size_t)c * plane,
-                .width = width, .height = height, .first = first, .count = ADCGS_MIN(unit, length - first),
-                .l1_scale = (1.0f - shares->square) * errors, .square_scale = shares->square / ADCGS_LOSS_EVEN * errors,
-                .ssim_scale = -shares->ssim * (float)(1.0 / (CHANNELS * (double)plane))};
+            loss->strip[n++] = (adcgs_loss_strip){.image = image + (size_t)c * plane,
+                                                  .target = target + (size_t)c * plane,
+                                                  .grad = grad + (size_t)c * plane,
+                                                  .width = width,
+                                                  .height = height,
+                                                  .first = first,
+                                                  .count = ADCGS_MIN(unit, length - first),
+                                                  .l1_scale = (1.0f - shares->square) * errors,
+                                                  .square_scale = shares->square / ADCGS_LOSS_EVEN * errors,
+                                                  .ssim_scale = -shares->ssim * (float)(1.0 / (CHANNELS * (double)plane))};
     for (int i = 0; i < n && !bands; i++)
         place_stripes(&loss->strip[i]);
     adcgs_pool_run(loss->pool, bands ? run_band : run_strip, loss, n);

@@ -3,7 +3,7 @@
 #ifndef ADCGS_GRAD_LOSS_STRIP_H
 #define ADCGS_GRAD_LOSS_STRIP_H
 
-#define ADCGS_LOSS_HALO 5   /**< pixels: radius of the SSIM window */
+#define ADCGS_LOSS_HALO 5 /**< pixels: radius of the SSIM window */
 #define ADCGS_LOSS_LANES 16
 /** Maximum columns of a stripe; a strip has one stripe per lane. */
 #define ADCGS_LOSS_STRIPE 14
@@ -14,11 +14,11 @@
 typedef struct adcgs_loss_strip {
     const float *image, *target; /**< [height][width], one channel */
     float *grad;
-    int width, height;           /**< of the image */
-    int first, count;            /**< columns of the strip */
-    int begin, stripe;           /**< first column read, and columns of a stripe, an even number */
+    int width, height;                        /**< of the image */
+    int first, count;                         /**< columns of the strip */
+    int begin, stripe;                        /**< first column read, and columns of a stripe, an even number */
     float l1_scale, square_scale, ssim_scale; /**< factors of the gradients */
-    double l1, mse, ssim;        /**< out: sums over the strip's pixels */
+    double l1, mse, ssim;                     /**< out: sums over the strip's pixels */
 } adcgs_loss_strip;
 
 enum { ADCGS_LOSS_RING = 32, ADCGS_LOSS_TURN = 16 };
@@ -30,14 +30,14 @@ typedef float adcgs_loss_wide[ADCGS_LOSS_STRIPE + 2 * ADCGS_LOSS_HALO][ADCGS_LOS
 
 /** Working memory of a kernel. */
 typedef struct adcgs_loss_scratch {
-    _Alignas(64) float row[ADCGS_LOSS_SPAN];         /**< of the image */
-    adcgs_loss_row inside, mine;                     /**< 1 in columns of the image and of the strip, else 0 */
-    float sums[3][ADCGS_LOSS_LANES];                 /**< of a batch */
-    adcgs_loss_wide pixels[ADCGS_LOSS_RING][2];      /**< ring of rows of image and target */
-    adcgs_loss_wide products[2];                     /**< of one row: sum of squares, product */
-    adcgs_loss_row in[ADCGS_LOSS_RING][4];           /**< ring of rows of those, through the window */
+    _Alignas(64) float row[ADCGS_LOSS_SPAN];    /**< of the image */
+    adcgs_loss_row inside, mine;                /**< 1 in columns of the image and of the strip, else 0 */
+    float sums[3][ADCGS_LOSS_LANES];            /**< of a batch */
+    adcgs_loss_wide pixels[ADCGS_LOSS_RING][2]; /**< ring of rows of image and target */
+    adcgs_loss_wide products[2];                /**< of one row: sum of squares, product */
+    adcgs_loss_row in[ADCGS_LOSS_RING][4];      /**< ring of rows of those, through the window */
     adcgs_loss_wide derivatives[ADCGS_LOSS_TURN][3];
-    adcgs_loss_row out[ADCGS_LOSS_RING][3];          /**< ring of rows of those, through the window */
+    adcgs_loss_row out[ADCGS_LOSS_RING][3]; /**< ring of rows of those, through the window */
     adcgs_loss_row grad[ADCGS_LOSS_TURN];
 } adcgs_loss_scratch;
 

@@ -13,7 +13,7 @@
 /** Gradients per slot, overwritten; arrays [n] with n the primitives' slots, 64-byte aligned, caller-owned. */
 typedef struct adcgs_raster_grads {
     float *mean[3], *scale[3], *rotation[4], *opacity, *colour[3];
-    float *weight;      /**< sum over pixels of alpha*T: temporal significance Psi(k,t) (paper section 3.5) */
+    float *weight; /**< sum over pixels of alpha*T: temporal significance Psi(k,t) (paper section 3.5) */
     /** length of (sum over pixels of |dL/du|, of |dL/dv|), each times half the image size; NULL: skipped, which saves time */
     float *screen;
 } adcgs_raster_grads;
@@ -23,7 +23,7 @@ typedef struct adcgs_raster_grads {
 static inline adcgs_raster_grads adcgs_raster_grads_of(float *rows, size_t n)
 {
     const adcgs_slot_out o = adcgs_rows_at(rows, n, 0);
-    adcgs_raster_grads g = { .opacity = o.opacity, .weight = rows + ADCGS_ROWS * n, .screen = rows + (ADCGS_ROWS + 1) * n };
+    adcgs_raster_grads g = {.opacity = o.opacity, .weight = rows + ADCGS_ROWS * n, .screen = rows + (ADCGS_ROWS + 1) * n};
     memcpy(g.mean, o.mean, sizeof g.mean);
     memcpy(g.scale, o.scale, sizeof g.scale);
     memcpy(g.rotation, o.rotation, sizeof g.rotation);

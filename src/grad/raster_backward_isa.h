@@ -7,13 +7,13 @@
 
 /* Sums over the pixels of a (splat, tile) pair, in the order of the twelve results of vf_sums(). e is alpha * dL/dalpha. */
 enum {
-    SUM_E = 0,       /* e */
-    SUM_EX = 4,      /* e dx */
-    SUM_EY = 8,      /* e dy */
-    SUM_EXX = 1,     /* e dx dx */
-    SUM_EXY = 5,     /* e dx dy */
-    SUM_EYY = 9,     /* e dy dy */
-    SUM_RED = 2,     /* alpha T dL/dC, per colour */
+    SUM_E = 0,   /* e */
+    SUM_EX = 4,  /* e dx */
+    SUM_EY = 8,  /* e dy */
+    SUM_EXX = 1, /* e dx dx */
+    SUM_EXY = 5, /* e dx dy */
+    SUM_EYY = 9, /* e dy dy */
+    SUM_RED = 2, /* alpha T dL/dC, per colour */
     SUM_GREEN = 6,
     SUM_BLUE = 10,
     SUM_WEIGHT = 12, /* alpha T */

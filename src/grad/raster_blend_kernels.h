@@ -10,12 +10,12 @@
 #define FETCH_ENTRIES 8
 
 typedef struct tile_state {
-    alignas(64) float t[16][16];      /* transmittance before the next splat */
+    alignas(64) float t[16][16];        /* transmittance before the next splat */
     alignas(64) float alpha[2][16][16]; /* opacities of the current and the next splat */
-    alignas(64) float behind[16][16]; /* gradient times (final colour - colour so far) */
+    alignas(64) float behind[16][16];   /* gradient times (final colour - colour so far) */
     alignas(64) float grad[16][3][16];
     alignas(64) float x[16], y[16]; /* left and top edges of the blocks */
-    uint32_t alive; /* blocks with remaining transmittance */
+    uint32_t alive;                 /* blocks with remaining transmittance */
 } tile_state;
 
 /* Loads the pixels of a block from a plane of the image; pixels outside are 0. */

@@ -65,12 +65,12 @@ static inline void conic_back(float back[3], const adcgs_projection *g, float ex
 static inline void rotation_back(float out[4], float d[3][3], float w, float x, float y, float z)
 {
     out[0] = 2.0f * (z * (d[1][0] - d[0][1]) + y * (d[0][2] - d[2][0]) + x * (d[2][1] - d[1][2]));
-    out[1] = 2.0f * (y * (d[0][1] + d[1][0]) + z * (d[0][2] + d[2][0]) + w * (d[2][1] - d[1][2]) -
-                     2.0f * x * (d[1][1] + d[2][2]));
-    out[2] = 2.0f * (x * (d[0][1] + d[1][0]) + z * (d[1][2] + d[2][1]) + w * (d[0][2] - d[2][0]) -
-                     2.0f * y * (d[0][0] + d[2][2]));
-    out[3] = 2.0f * (x * (d[0][2] + d[2][0]) + y * (d[1][2] + d[2][1]) + w * (d[1][0] - d[0][1]) -
-                     2.0f * z * (d[0][0] + d[1][1]));
+    out[1] =
+        2.0f * (y * (d[0][1] + d[1][0]) + z * (d[0][2] + d[2][0]) + w * (d[2][1] - d[1][2]) - 2.0f * x * (d[1][1] + d[2][2]));
+    out[2] =
+        2.0f * (x * (d[0][1] + d[1][0]) + z * (d[1][2] + d[2][1]) + w * (d[0][2] - d[2][0]) - 2.0f * y * (d[0][0] + d[2][2]));
+    out[3] =
+        2.0f * (x * (d[0][2] + d[2][0]) + y * (d[1][2] + d[2][1]) + w * (d[1][0] - d[0][1]) - 2.0f * z * (d[0][0] + d[1][1]));
 }
 
 /* From gradients of centre (u, v) and covariance (p, q, r) to those of the Gaussian. */

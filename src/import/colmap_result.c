@@ -146,8 +146,8 @@ static adcgs_status list_standing(adcgs_poses *poses, const adcgs_import_job *jo
     const adcgs_source_images *sources = &job->sources;
     mean_pose mean = {.n = 0};
     for (uint32_t i = 0; i < sources->n; i++) {
-        const adcgs_colmap_image *image = sources->list[i].camera == camera ? find_image(poses, sources,
-                                                                                         &sources->list[i]) : NULL;
+        const adcgs_colmap_image *image =
+            sources->list[i].camera == camera ? find_image(poses, sources, &sources->list[i]) : NULL;
         if (!image)
             continue;
         if (!mean.n)
@@ -212,9 +212,11 @@ static adcgs_status list_posed(adcgs_poses *poses, const adcgs_import_job *job)
         return no_memory(job);
     ADCGS_TRY(stands ? list_rig(poses, job) : list_moving(poses, job));
     if (poses->n < least)
-        return adcgs_fail(job->error, ADCGS_ERR_DATA, "COLMAP found where %u of %u %s were, expected at least %u; check that "
-                          "they show the same objects from different positions. Its output is in %s", poses->n,
-                          stands ? job->sources.n_cameras : job->sources.n, stands ? "cameras" : "images", least, job->log);
+        return adcgs_fail(job->error, ADCGS_ERR_DATA,
+                          "COLMAP found where %u of %u %s were, expected at least %u; check that "
+                          "they show the same objects from different positions. Its output is in %s",
+                          poses->n, stands ? job->sources.n_cameras : job->sources.n, stands ? "cameras" : "images", least,
+                          job->log);
     const uint32_t every = (uint32_t)job->options->test_every;
     for (uint32_t i = 0; every && i < poses->n; i++)
         poses->posed[i].is_test = i % every == every / 2; /* usually neither the first nor the last: between others */
@@ -293,8 +295,10 @@ adcgs_status adcgs_poses_read(adcgs_poses *out, adcgs_import_job *job)
     *out = (adcgs_poses){0};
     adcgs_status status = find_largest(out, &place, job);
     if (status == ADCGS_OK && !place.folder)
-        status = adcgs_fail(job->error, ADCGS_ERR_DATA, "COLMAP found no cameras; check that images show the same objects "
-                            "from different positions. Its output is in %s", job->log);
+        status = adcgs_fail(job->error, ADCGS_ERR_DATA,
+                            "COLMAP found no cameras; check that images show the same objects "
+                            "from different positions. Its output is in %s",
+                            job->log);
     if (status == ADCGS_OK)
         status = list_posed(out, job);
     if (status == ADCGS_OK)

@@ -15,8 +15,8 @@ typedef struct adcgs_posed {
 } adcgs_posed;
 
 typedef struct adcgs_poses {
-    adcgs_colmap model;      /**< its points are the scene's initial points */
-    adcgs_posed *posed;      /**< in the order of the source images, or of the fixed cameras */
+    adcgs_colmap model; /**< its points are the scene's initial points */
+    adcgs_posed *posed; /**< in the order of the source images, or of the fixed cameras */
     uint32_t n;
 } adcgs_poses;
 

@@ -14,7 +14,8 @@
 #define EXHAUSTIVE_MOST 80 /* most images of a video for exhaustive matching; above it, only neighbours in time are matched */
 #define OVERLAP "12"       /* images before and after; also images at twice, four times, ... this distance */
 #define SMALLEST_MODEL "3"
-#define FISHEYE_FOCAL 0.4 /* focal length over the longer side from which COLMAP starts if no other is known, for fields
+#define FISHEYE_FOCAL \
+    0.4 /* focal length over the longer side from which COLMAP starts if no other is known, for fields
                              of view up to half the sphere */
 
 static const char *const renamed[][2] = {
@@ -33,7 +34,7 @@ typedef struct step {
     int n;            /* number of words */
     char *words[WORDS_MAX + 1];
     FILE *log;
-    char last[200];   /* last line with an error */
+    char last[200]; /* last line with an error */
 } step;
 
 static void add_word(step *s, const char *word)
@@ -116,11 +117,16 @@ adcgs_status adcgs_import_ask(adcgs_colmap_program *out, const adcgs_import_opti
     setenv("QT_QPA_PLATFORM", "offscreen", 0); /* COLMAP starts as a graphical program, but there may be no display */
     const adcgs_status status = adcgs_child_run(words, NULL, hear_options, out, &code, error);
     if (status == ADCGS_ERR_UNSUPPORTED)
-        return adcgs_fail(error, status, "%s: no such program; it is needed to estimate the cameras: install COLMAP (on "
-                          "Debian: apt-get install colmap), or name it with --colmap", options->colmap);
+        return adcgs_fail(error, status,
+                          "%s: no such program; it is needed to estimate the cameras: install COLMAP (on "
+                          "Debian: apt-get install colmap), or name it with --colmap",
+                          options->colmap);
     ADCGS_TRY(status);
-    return out->is_known ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: its feature_extractor takes no "
-                                                 "--database_path, expected COLMAP 3.6 or later", options->colmap);
+    return out->is_known ? ADCGS_OK
+                         : adcgs_fail(error, ADCGS_ERR_UNSUPPORTED,
+                                      "%s: its feature_extractor takes no "
+                                      "--database_path, expected COLMAP 3.6 or later",
+                                      options->colmap);
 }
 
 /* ---- The steps ---- */

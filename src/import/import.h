@@ -22,16 +22,16 @@ typedef enum adcgs_import_lens {
 typedef struct adcgs_import_options {
     char *const *inputs; /**< files and folders, as on the command line */
     int n_inputs;
-    const char *output;  /**< folder to create */
-    const char *colmap;  /**< name or path of the program */
-    const char *masks;   /**< a folder, or NULL */
-    int side;            /**< maximum width and height of images */
-    int frames;          /**< maximum number of frames from a moving camera's video */
-    int test_every;      /**< every test_every-th view or fixed camera is for testing; 0: none */
-    int lens;            /**< adcgs_import_lens */
-    int own_lens;        /**< each camera of a rig has intrinsics of its own */
-    int threads;         /**< for COLMAP; 0: one per processor */
-    adcgs_fps fps;       /**< of images taken one after another; unknown: all at one time */
+    const char *output; /**< folder to create */
+    const char *colmap; /**< name or path of the program */
+    const char *masks;  /**< a folder, or NULL */
+    int side;           /**< maximum width and height of images */
+    int frames;         /**< maximum number of frames from a moving camera's video */
+    int test_every;     /**< every test_every-th view or fixed camera is for testing; 0: none */
+    int lens;           /**< adcgs_import_lens */
+    int own_lens;       /**< each camera of a rig has intrinsics of its own */
+    int threads;        /**< for COLMAP; 0: one per processor */
+    adcgs_fps fps;      /**< of images taken one after another; unknown: all at one time */
 } adcgs_import_options;
 
 /** Quality of the poses. */

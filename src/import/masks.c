@@ -54,10 +54,11 @@ static adcgs_status check_shape(const adcgs_import_job *job, const adcgs_source_
     const int lies = adcgs_photo_lies(source->turn);
     const int width = lies ? source->height : source->width, height = lies ? source->width : source->height;
     const double ratio = (double)mask->width * height / ((double)mask->height * width);
-    return fabs(ratio - 1.0) <= SHAPE_TOLERANCE
-               ? ADCGS_OK
-               : adcgs_fail(job->error, ADCGS_ERR_DATA, "%s: %dx%d pixels, another aspect ratio than its image, which "
-                            "becomes %dx%d", path, mask->width, mask->height, width, height);
+    return fabs(ratio - 1.0) <= SHAPE_TOLERANCE ? ADCGS_OK
+                                                : adcgs_fail(job->error, ADCGS_ERR_DATA,
+                                                             "%s: %dx%d pixels, another aspect ratio than its image, which "
+                                                             "becomes %dx%d",
+                                                             path, mask->width, mask->height, width, height);
 }
 
 /**
@@ -99,8 +100,8 @@ adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_source_image *
     if (!from)
         return ADCGS_OK;
     job->has_masks = 1;
-    char *to = adcgs_path("%s/masks/%s/%s.%s.png", job->folder, job->sources.cameras[source->camera].folder, source->stem,
-                          source->end);
+    char *to =
+        adcgs_path("%s/masks/%s/%s.%s.png", job->folder, job->sources.cameras[source->camera].folder, source->stem, source->end);
     adcgs_status status = !to                  ? adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", from)
                           : adcgs_is_there(to) ? ADCGS_OK
                                                : make_mask(job, source, from, to);
@@ -118,8 +119,8 @@ adcgs_status adcgs_import_camera_mask(adcgs_import_job *job, uint32_t camera)
     if (!from)
         return ADCGS_OK;
     char *to = adcgs_path("%s/masks/%s.png", job->folder, name);
-    adcgs_status status = to ? adcgs_image_read(&mask, from, job->error)
-                             : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", from);
+    adcgs_status status =
+        to ? adcgs_image_read(&mask, from, job->error) : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", from);
     if (status == ADCGS_OK) {
         status = adcgs_mask_settle(&mask, from, job->error);
         if (status == ADCGS_OK)

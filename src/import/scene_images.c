@@ -90,7 +90,8 @@ static adcgs_status make_image(adcgs_import_job *job, adcgs_source_image *source
     ADCGS_TRY(adcgs_import_goes_on(job));
     ADCGS_TRY(adcgs_import_path(&images, job, "images"));
     adcgs_status status = (to = adcgs_source_image_path(&job->sources, source, images))
-                              ? ADCGS_OK : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", images);
+                              ? ADCGS_OK
+                              : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", images);
     free(images);
     if (status == ADCGS_OK && video) {
         source->width = adcgs_video_get_info(video)->width;
@@ -125,8 +126,8 @@ static adcgs_status make_images(adcgs_import_job *job, uint32_t camera, uint32_t
 static adcgs_status make_camera_folder(const adcgs_import_job *job, const char *parent, uint32_t camera)
 {
     char *name = adcgs_path("%s/%s", parent, job->sources.cameras[camera].folder);
-    const adcgs_status status = name ? adcgs_import_make_folder(job, name)
-                                     : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", parent);
+    const adcgs_status status =
+        name ? adcgs_import_make_folder(job, name) : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", parent);
     free(name);
     return status;
 }
@@ -144,8 +145,10 @@ adcgs_status adcgs_import_pictures(adcgs_import_job *job)
         ADCGS_TRY(make_images(job, c, &done));
     }
     if (job->options->masks && !job->has_masks)
-        return adcgs_fail(job->error, ADCGS_ERR_DATA, "%s: no mask there has the name of an image or of a camera, such as "
-                          "%s.png or %s.png", job->options->masks, job->sources.list[0].stem, job->sources.cameras[0].name);
+        return adcgs_fail(job->error, ADCGS_ERR_DATA,
+                          "%s: no mask there has the name of an image or of a camera, such as "
+                          "%s.png or %s.png",
+                          job->options->masks, job->sources.list[0].stem, job->sources.cameras[0].name);
     job->report->width = job->sources.list[0].width;
     job->report->height = job->sources.list[0].height;
     return ADCGS_OK;

@@ -8,9 +8,9 @@
 typedef struct adcgs_import_job {
     const adcgs_import_options *options;
     adcgs_source_images sources;
-    char *folder;      /**< folder of the unfinished scene */
-    char *log;         /**< path of COLMAP's log */
-    int has_masks;     /**< at least one image has a mask */
+    char *folder;  /**< folder of the unfinished scene */
+    char *log;     /**< path of COLMAP's log */
+    int has_masks; /**< at least one image has a mask */
     adcgs_progress *progress;
     adcgs_import_report *report;
     adcgs_error *error;

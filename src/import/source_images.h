@@ -11,25 +11,25 @@ typedef enum adcgs_footage_kind { ADCGS_FOOTAGE_PICTURES, ADCGS_FOOTAGE_FILM, AD
 
 /** A camera, or a group of images that are assumed to be from one camera. */
 typedef struct adcgs_source_image_camera {
-    char name[ADCGS_SOURCE_IMAGE_NAME]; /**< unique */
+    char name[ADCGS_SOURCE_IMAGE_NAME];   /**< unique */
     char folder[ADCGS_SOURCE_IMAGE_NAME]; /**< of its images; images in one folder share their intrinsics */
-    char *video;                /**< its footage; NULL: images */
-    int64_t frames;             /**< of the video */
+    char *video;                          /**< its footage; NULL: images */
+    int64_t frames;                       /**< of the video */
     adcgs_fps rate;
-    char key[160];              /**< for images: properties that distinguish cameras */
-    double focal;               /**< approximate focal length over the longer side; 0: unknown */
-    uint32_t images;            /**< number of its source images */
+    char key[160];   /**< for images: properties that distinguish cameras */
+    double focal;    /**< approximate focal length over the longer side; 0: unknown */
+    uint32_t images; /**< number of its source images */
 } adcgs_source_image_camera;
 
 typedef struct adcgs_source_image {
     uint32_t camera;
     char stem[ADCGS_SOURCE_IMAGE_NAME]; /**< unique */
-    char end[8];                /**< extension of the file to make: "jpg" or "png" */
-    char *path;                 /**< of the image; NULL: a frame of the camera's video */
+    char end[8];                        /**< extension of the file to make: "jpg" or "png" */
+    char *path;                         /**< of the image; NULL: a frame of the camera's video */
     int64_t frame;
-    double time;                /**< seconds from the first source image */
-    int turn, width, height;    /**< parameters for adcgs_photo_shape(); a frame's size is unknown before it is decoded */
-    int as_is;                  /**< the file can be copied unchanged */
+    double time;             /**< seconds from the first source image */
+    int turn, width, height; /**< parameters for adcgs_photo_shape(); a frame's size is unknown before it is decoded */
+    int as_is;               /**< the file can be copied unchanged */
 } adcgs_source_image;
 
 typedef struct adcgs_source_images {
@@ -37,8 +37,8 @@ typedef struct adcgs_source_images {
     adcgs_source_image_camera *cameras;
     adcgs_source_image *list;
     uint32_t n_cameras, n;
-    adcgs_fps rate;             /**< of the selected frames; unknown: images of one time */
-    int is_numbered;            /**< names of images are one prefix with consecutive numbers */
+    adcgs_fps rate;  /**< of the selected frames; unknown: images of one time */
+    int is_numbered; /**< names of images are one prefix with consecutive numbers */
 } adcgs_source_images;
 
 /** Call adcgs_source_images_clear() also on failure. */

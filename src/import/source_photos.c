@@ -56,7 +56,7 @@ static adcgs_status add_picture(adcgs_source_images *sources, const char *path, 
     source->height = lies ? photo.width : photo.height;
     adcgs_source_image_fit(&source->width, &source->height, options->side);
     source->as_is = (is_jpeg || is_png) && photo.turn == ADCGS_PHOTO_UPRIGHT && source->width == photo.width &&
-                  source->height == photo.height;
+                    source->height == photo.height;
     snprintf(source->end, sizeof source->end, "%s", is_jpeg ? "jpg" : "png");
     source->time = options->fps.den ? (double)(sources->n - 1) / adcgs_fps_value(options->fps) : 0.0;
     source->path = strdup(path);
@@ -117,8 +117,8 @@ static adcgs_status add_names(adcgs_source_images *sources, const char *folder, 
 {
     for (size_t i = 0; i < n; i++) {
         char *path = adcgs_path("%s/%s", folder, names[i]);
-        const adcgs_status status = path ? add_picture(sources, path, options, error)
-                                         : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
+        const adcgs_status status =
+            path ? add_picture(sources, path, options, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
         free(path);
         ADCGS_TRY(status);
         adcgs_progress_show(progress, "scanning  %6u images", sources->n);
@@ -157,6 +157,7 @@ adcgs_status adcgs_source_images_photos(adcgs_source_images *sources, const adcg
     for (uint32_t i = 0; i < sources->n; i++)
         adcgs_counting_add(&counting, sources->list[i].stem);
     sources->is_numbered = adcgs_counting_holds(&counting);
-    return sources->n >= 3 ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u image%s, expected at least three",
-                                                   options->inputs[0], sources->n, adcgs_s(sources->n));
+    return sources->n >= 3 ? ADCGS_OK
+                           : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u image%s, expected at least three", options->inputs[0],
+                                        sources->n, adcgs_s(sources->n));
 }

@@ -56,8 +56,9 @@ static adcgs_status add_frames(adcgs_source_images *sources, const char *path, c
     for (int64_t frame = 0; frame < info->frames; frame += step)
         ADCGS_TRY(add_frame(sources, video, frame, error));
     sources->rate = adcgs_fps_divide(info->rate, step);
-    return sources->n >= 3 ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u frame%s, expected at least three", path,
-                                                   sources->n, adcgs_s(sources->n));
+    return sources->n >= 3 ? ADCGS_OK
+                           : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u frame%s, expected at least three", path, sources->n,
+                                        adcgs_s(sources->n));
 }
 
 adcgs_status adcgs_source_images_video(adcgs_source_images *sources, const char *path, const adcgs_import_options *options,
@@ -79,9 +80,11 @@ static adcgs_status add_synchronous_frames(adcgs_source_images *sources, const c
     ADCGS_TRY(add_camera(sources, path, video, options, error));
     const adcgs_source_image_camera *first = &sources->cameras[0];
     if (info->frames != first->frames || fabs(adcgs_fps_value(info->rate) / adcgs_fps_value(first->rate) - 1.0) > 0.001)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %lld frames at %.6g per second, but %s has %lld at %.6g: expected "
-                          "videos that begin and end together", path, (long long)info->frames, adcgs_fps_value(info->rate),
-                          first->video, (long long)first->frames, adcgs_fps_value(first->rate));
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "%s: %lld frames at %.6g per second, but %s has %lld at %.6g: expected "
+                          "videos that begin and end together",
+                          path, (long long)info->frames, adcgs_fps_value(info->rate), first->video, (long long)first->frames,
+                          adcgs_fps_value(first->rate));
     for (int64_t m = 0, last = -1; m < MOMENTS; m++) {
         const int64_t frame = m * (info->frames - 1) / (MOMENTS - 1);
         if (frame != last)

@@ -16,8 +16,8 @@
 #include <unistd.h>
 
 #define NAME_TRIES 1000 /* attempts to find an unused temporary name */
-#define NAME_USUAL 255 /* maximum length of a name [bytes] if the file system does not report it; Linux's value */
-#define LINKS_MAX 40 /* maximum number of links in a chain; Linux's limit */
+#define NAME_USUAL 255  /* maximum length of a name [bytes] if the file system does not report it; Linux's value */
+#define LINKS_MAX 40    /* maximum number of links in a chain; Linux's limit */
 #define MODE_BITS 0777
 #define READER_NAP 50000000 /* nanoseconds between two checks for a reader of a pipe */
 
@@ -52,8 +52,7 @@ static int may_follow(const char *name)
     free(path);
     if (unknown)
         return 0;
-    return link.st_uid == geteuid() || link.st_uid == folder.st_uid || !(folder.st_mode & S_ISVTX) ||
-           !(folder.st_mode & S_IWOTH);
+    return link.st_uid == geteuid() || link.st_uid == folder.st_uid || !(folder.st_mode & S_ISVTX) || !(folder.st_mode & S_IWOTH);
 }
 
 /**

@@ -21,8 +21,8 @@
 #define WATCH (1.25 * BEAT)     /* seconds within which a live owner on another machine touches its claim once */
 #define WATCH_LONG (6.0 * BEAT) /* the same for a claim whose time lies in the future, so its age is unknown */
 #define LOOK 0.1                /* seconds between two checks of a watched claim */
-#define TRIES 5 /* attempts to take a claim, in case others appear and vanish in between */
-#define TEXT_MAX 400 /* bytes of a claim file */
+#define TRIES 5                 /* attempts to take a claim, in case others appear and vanish in between */
+#define TEXT_MAX 400            /* bytes of a claim file */
 #define ENDED ULLONG_MAX
 /* Skips the 18 fields of /proc/PID/stat (proc(5)) between state, field 3, and starttime. */
 #define SKIP_18 " %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s"
@@ -100,9 +100,9 @@ static int read_claim(const char *path, char text[TEXT_MAX], owner *who, struct 
     if (n < 0)
         return -1;
     text[n] = '\0';
-    *who = (owner){ .host = "" };
+    *who = (owner){.host = ""};
     if (sscanf(text, "%79s %ld %31s %119s %llu", who->host, &who->process, who->since, who->place, &who->began) < 3)
-        *who = (owner){ .host = "?", .since = "?" };
+        *who = (owner){.host = "?", .since = "?"};
     return 0;
 }
 
@@ -147,7 +147,7 @@ static answer ask_system(const owner *who)
 /** True if nobody touches a claim for `seconds` by the monotonic clock; the clock of the files can be set. */
 static int stays_untouched(const adcgs_claim *c, const struct stat *before, double seconds)
 {
-    const struct timespec nap = { .tv_nsec = (long)(1e9 * LOOK) };
+    const struct timespec nap = {.tv_nsec = (long)(1e9 * LOOK)};
     const double end = adcgs_seconds() + seconds;
     struct stat now;
     char text[TEXT_MAX];
@@ -211,8 +211,7 @@ static adcgs_claim *make(const char *path, const char *what)
     find_own(&own);
     if (c && (c->path = strdup(path)) && (c->what = strdup(what)) && (c->mine = malloc(n))) {
         snprintf(c->mine, n, "%s.%s-%ld", path, own.host, own.process);
-        snprintf(c->text, sizeof c->text, "%s %ld %s %s %llu\n", own.host, own.process, own.since, own.place,
-                 own.began);
+        snprintf(c->text, sizeof c->text, "%s %ld %s %s %llu\n", own.host, own.process, own.since, own.place, own.began);
         return c;
     }
     clear(c);
@@ -268,7 +267,7 @@ static adcgs_status begin(adcgs_claim *c, adcgs_error *error)
 /** Take over a dead claim. Several processes may find it: the last one to rename owns it, and the others see that. */
 static int take_over(const adcgs_claim *c)
 {
-    const struct timespec while_others_rename = { .tv_nsec = 300000000 };
+    const struct timespec while_others_rename = {.tv_nsec = 300000000};
     if ((create(c->mine, c->text) && errno != EEXIST) || rename(c->mine, c->path))
         return 0;
     nanosleep(&while_others_rename, NULL);
@@ -277,7 +276,7 @@ static int take_over(const adcgs_claim *c)
 
 static adcgs_status acquire(adcgs_claim *c, adcgs_error *error)
 {
-    owner who = { .process = 0 };
+    owner who = {.process = 0};
     double age = 0;
     for (int i = 0; i < TRIES; i++) {
         if (!create(c->path, c->text))
@@ -323,10 +322,10 @@ adcgs_status adcgs_claim_absent(const char *path, const char *what, adcgs_error 
     if (!c)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     const answer found = read_owner(c, &who, &age);
-    const adcgs_status status =
-        found == ALIVE     ? refuse(c, &who, age, error)
-        : found == UNKNOWN ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create: %s", c->mine, strerror(errno))
-                           : ADCGS_OK;
+    const adcgs_status status = found == ALIVE ? refuse(c, &who, age, error)
+                                : found == UNKNOWN
+                                    ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create: %s", c->mine, strerror(errno))
+                                    : ADCGS_OK;
     unlink(c->mine);
     clear(c);
     return status;
@@ -334,9 +333,10 @@ adcgs_status adcgs_claim_absent(const char *path, const char *what, adcgs_error 
 
 adcgs_status adcgs_claim_check(const adcgs_claim *claim, adcgs_error *error)
 {
-    return is_ours(claim) ? ADCGS_OK :
-           adcgs_fail(error, ADCGS_ERR_IO, "%s: another process has taken over %s: it considered this process dead", claim->path,
-                      claim->what);
+    return is_ours(claim)
+               ? ADCGS_OK
+               : adcgs_fail(error, ADCGS_ERR_IO, "%s: another process has taken over %s: it considered this process dead",
+                            claim->path, claim->what);
 }
 
 void adcgs_claim_drop(adcgs_claim **claim)

@@ -18,7 +18,8 @@
 
 #include "io/draco_shim.h"
 
-namespace {
+namespace
+{
 
 /** Values of a point, normalised integers as 0..1; missing components are zero. */
 template <typename T> void read_values(const draco::PointAttribute *attribute, uint32_t point, T value[3])
@@ -80,8 +81,8 @@ adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_points *points, c
     encoder.SetSpeedOptions(0, 0);
     encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
     encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, ADCGS_DRACO_BITS);
-    const draco::Status status = cloud ? encoder.EncodePointCloudToBuffer(*cloud, &buffer)
-                                       : draco::Status(draco::Status::DRACO_ERROR, "no point cloud");
+    const draco::Status status =
+        cloud ? encoder.EncodePointCloudToBuffer(*cloud, &buffer) : draco::Status(draco::Status::DRACO_ERROR, "no point cloud");
     if (!status.ok())
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: cannot encode as Draco: %s", path, status.error_msg());
     *data = static_cast<uint8_t *>(std::malloc(buffer.size()));
@@ -118,4 +119,4 @@ adcgs_status encode_c(uint8_t **data, size_t *bytes, const adcgs_points *points,
 
 } // namespace
 
-extern "C" const adcgs_draco adcgs_draco_table = { PACKAGE_VERSION, parse_c, encode_c };
+extern "C" const adcgs_draco adcgs_draco_table = {PACKAGE_VERSION, parse_c, encode_c};

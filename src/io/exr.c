@@ -24,9 +24,7 @@ typedef struct picture {
 } picture;
 
 /** Ignores the library's messages: callers write their own, with the file's name. */
-static void ignore_message(exr_const_context_t context, exr_result_t code, const char *text)
-{
-}
+static void ignore_message(exr_const_context_t context, exr_result_t code, const char *text) {}
 
 static void list_planes(picture *p)
 {

@@ -50,8 +50,7 @@ adcgs_status adcgs_file_check(const char *path, const char *what, adcgs_error *e
     return size ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected %s", path, what);
 }
 
-adcgs_status adcgs_file_load_open(uint8_t **data, size_t *bytes, FILE *file, const char *path, uint64_t limit,
-                                  adcgs_error *error)
+adcgs_status adcgs_file_load_open(uint8_t **data, size_t *bytes, FILE *file, const char *path, uint64_t limit, adcgs_error *error)
 {
     struct stat status;
     uint8_t *buffer = NULL;

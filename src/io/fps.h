@@ -9,7 +9,7 @@
 #include "base/base.h"
 
 #define ADCGS_FPS_MIN 1e-3 /**< lowest rate that adcgs_fps_parse() accepts */
-#define ADCGS_FPS_MAX 1e4 /**< highest rate that adcgs_fps_parse() accepts */
+#define ADCGS_FPS_MAX 1e4  /**< highest rate that adcgs_fps_parse() accepts */
 
 /** num / den frames per second, in lowest terms; den 0: unknown. */
 typedef struct adcgs_fps {

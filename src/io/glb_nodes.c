@@ -83,8 +83,10 @@ static adcgs_status find_parents(const adcgs_glb *g, json_t *nodes, size_t *pare
     json_t *node, *child;
     for (i = 0; i < n; i++)
         parents[i] = n;
-    json_array_foreach(nodes, i, node) {
-        json_array_foreach(json_object_get(node, "children"), j, child) {
+    json_array_foreach(nodes, i, node)
+    {
+        json_array_foreach(json_object_get(node, "children"), j, child)
+        {
             const json_int_t index = json_is_integer(child) ? json_integer_value(child) : -1;
             if (index < 0 || (size_t)index >= n)
                 return bad(g, ADCGS_ERR_DATA, "a node lists a child that does not exist");
@@ -113,9 +115,9 @@ static void find_scene(const adcgs_glb *g, graph *to)
     const size_t n = json_array_size(to->nodes), chosen = (size_t)json_integer_value(json_object_get(g->root, "scene"));
     size_t i;
     memset(to->in_scene, !json_array_size(scenes), n);
-    json_array_foreach(json_object_get(json_array_get(scenes, chosen), "nodes"), i, value)
-        if (json_is_integer(value) && (uint64_t)json_integer_value(value) < n)
-            to->in_scene[json_integer_value(value)] = 1;
+    json_array_foreach(json_object_get(json_array_get(scenes, chosen), "nodes"), i,
+                       value) if (json_is_integer(value) && (uint64_t)json_integer_value(value) < n)
+        to->in_scene[json_integer_value(value)] = 1;
 }
 
 /** The matrix of a node, with its parents' transforms applied. *root: its topmost parent. */
@@ -141,7 +143,8 @@ static adcgs_status find_places(adcgs_glb_places *out, const adcgs_glb *g, const
 {
     size_t i, root = 0, n = 0;
     json_t *node;
-    json_array_foreach(of->nodes, i, node) {
+    json_array_foreach(of->nodes, i, node)
+    {
         double matrix[12];
         if (!uses(node, mesh))
             continue;

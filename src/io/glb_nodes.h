@@ -9,7 +9,7 @@
 
 /** Transforms of the nodes that use a mesh: row-major 3x4 matrices, with the parents' transforms applied. */
 typedef struct adcgs_glb_places {
-    size_t n;              /**< at least 1 */
+    size_t n; /**< at least 1 */
     double (*matrix)[12];
 } adcgs_glb_places;
 

@@ -9,7 +9,7 @@
 #include <math.h>
 
 #define INT_MAX_IN_JSON ((json_int_t)1 << 53) /* whole numbers up to here are exact in a double */
-#define STRIDE_MAX 252 /* bytes; glTF's upper bound */
+#define STRIDE_MAX 252                        /* bytes; glTF's upper bound */
 
 enum { INT8 = 5120, UINT8, INT16, UINT16 };
 

@@ -13,8 +13,8 @@
 typedef struct adcgs_glb {
     const char *path;
     adcgs_error *error;
-    json_t *root;       /**< the caller frees it */
-    json_t *attributes; /**< of the primitive, in root */
+    json_t *root;           /**< the caller frees it */
+    json_t *attributes;     /**< of the primitive, in root */
     const uint8_t *numbers; /**< the binary chunk; NULL without one */
     size_t n_bytes;
 } adcgs_glb;
@@ -22,9 +22,9 @@ typedef struct adcgs_glb {
 typedef struct adcgs_glb_view {
     const uint8_t *at;
     size_t stride;
-    uint32_t count;  /**< 1 to ADCGS_SPLATS_MAX */
-    int type;        /**< component type, a code of glTF */
-    int is_normal;   /**< integers represent -1..1 or 0..1 */
+    uint32_t count; /**< 1 to ADCGS_SPLATS_MAX */
+    int type;       /**< component type, a code of glTF */
+    int is_normal;  /**< integers represent -1..1 or 0..1 */
 } adcgs_glb_view;
 
 /** Find a required attribute with this number of components. All bytes of the returned view lie in the binary chunk. */

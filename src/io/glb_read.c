@@ -12,10 +12,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define TEXT_MAX ((size_t)16 << 20) /* bytes of JSON; splats need a few kilobytes, and jansson takes about 20 times the text in
+#define TEXT_MAX \
+    ((size_t)16 << 20)           /* bytes of JSON; splats need a few kilobytes, and jansson takes about 20 times the text in
                                        memory */
-#define SCALE_MIN 1.8048514e-35f    /* e^-80: lower bound of scales, which flat splats get */
-#define SCALE_MAX 5.5406223e34 /* e^80: upper bound of scales */
+#define SCALE_MIN 1.8048514e-35f /* e^-80: lower bound of scales, which flat splats get */
+#define SCALE_MAX 5.5406223e34   /* e^80: upper bound of scales */
 
 int adcgs_glb_is(const uint8_t *data, size_t bytes)
 {
@@ -98,7 +99,8 @@ static adcgs_status check_required(const adcgs_glb *g)
 {
     size_t i;
     json_t *value;
-    json_array_foreach(json_object_get(g->root, "extensionsRequired"), i, value) {
+    json_array_foreach(json_object_get(g->root, "extensionsRequired"), i, value)
+    {
         const char *const name = json_string_value(value);
         if (!name || !is_known(name))
             return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: needs the extension %s, which is not supported",
@@ -194,9 +196,9 @@ typedef const char *(*put_fn)(adcgs_splats *s, uint32_t i, int k, const double v
 static adcgs_status find(adcgs_glb_view *view, const adcgs_glb *g, const adcgs_splats *s, const char *name, int components)
 {
     ADCGS_TRY(adcgs_glb_find(view, g, name, components));
-    return view->count == s->n ? ADCGS_OK
-                               : adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: %s: %u elements, expected %u", g->path, name,
-                                            view->count, s->n);
+    return view->count == s->n
+               ? ADCGS_OK
+               : adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: %s: %u elements, expected %u", g->path, name, view->count, s->n);
 }
 
 static adcgs_status read_attribute(const adcgs_glb *g, adcgs_splats *s, const char *name, int components, put_fn put, int k)
@@ -279,7 +281,8 @@ static void clear_parts(parts *p)
     free(p->list);
 }
 
-#define FAR 1024.0 /* distance of a node from the origin over the extent of its splats; beyond it binary32 leaves fewer than
+#define FAR \
+    1024.0 /* distance of a node from the origin over the extent of its splats; beyond it binary32 leaves fewer than
                       four digits of a position */
 
 /** Take a node position far from the origin, as in scenes in map coordinates, as the offset of the file. */
@@ -353,10 +356,11 @@ static adcgs_status read_parts(parts *p, adcgs_glb *g)
 {
     size_t m, i;
     json_t *mesh, *primitive;
-    json_array_foreach(json_object_get(g->root, "meshes"), m, mesh) {
-        json_array_foreach(json_object_get(mesh, "primitives"), i, primitive)
-            if (json_object_get(json_object_get(primitive, "extensions"), ADCGS_GLB_SPLATS))
-                ADCGS_TRY(read_primitive(p, g, primitive, m));
+    json_array_foreach(json_object_get(g->root, "meshes"), m, mesh)
+    {
+        json_array_foreach(json_object_get(mesh, "primitives"), i,
+                           primitive) if (json_object_get(json_object_get(primitive, "extensions"), ADCGS_GLB_SPLATS))
+            ADCGS_TRY(read_primitive(p, g, primitive, m));
     }
     return p->n ? ADCGS_OK : bad(g, ADCGS_ERR_DATA, "no splats: no primitive with " ADCGS_GLB_SPLATS);
 }

@@ -20,7 +20,8 @@ static adcgs_status check_counts(const adcgs_glb *g, uint32_t n)
 {
     const char *name;
     json_t *index;
-    json_object_foreach(g->attributes, name, index) {
+    json_object_foreach(g->attributes, name, index)
+    {
         const json_t *const accessor = json_array_get(json_object_get(g->root, "accessors"), (size_t)json_integer_value(index));
         const json_int_t count = json_integer_value(json_object_get(accessor, "count"));
         if (count != (json_int_t)n)

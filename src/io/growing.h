@@ -11,10 +11,10 @@
 
 typedef struct adcgs_growing {
     adcgs_atomic atomic;
-    FILE *file;       /**< NULL: not open */
+    FILE *file; /**< NULL: not open */
     int is_regular;
-    int is_hidden;    /**< set by the caller: a regular file does not appear yet, even after a piece */
-    uint64_t bytes;   /**< length of the whole pieces */
+    int is_hidden;  /**< set by the caller: a regular file does not appear yet, even after a piece */
+    uint64_t bytes; /**< length of the whole pieces */
 } adcgs_growing;
 
 /** Errors as of adcgs_atomic_open(). A pipe waits for its reader. */

@@ -14,27 +14,27 @@
 #include <strings.h>
 
 #define RANGE_FIRST (UINT64_C(64) << 10) /* bytes of a first range */
-#define RANGE_MAX (UINT64_C(1) << 20) /* bytes of the longest range */
-#define BYTES_MAX (UINT64_C(1) << 36) /* of a stream of the highest level */
+#define RANGE_MAX (UINT64_C(1) << 20)    /* bytes of the longest range */
+#define BYTES_MAX (UINT64_C(1) << 36)    /* of a stream of the highest level */
 
 /** A cached range. */
 typedef struct window {
-    uint8_t *bytes;      /**< [room], the first `held` of them valid */
+    uint8_t *bytes; /**< [room], the first `held` of them valid */
     size_t held, room;
-    uint64_t at;         /**< offset of the first byte */
-    uint64_t asked;      /**< maximum length of the request */
+    uint64_t at;    /**< offset of the first byte */
+    uint64_t asked; /**< maximum length of the request */
 } window;
 
 struct adcgs_http {
     const adcgs_curl *curl;
     adcgs_transfer *transfer;
     char *url;
-    uint64_t size;       /**< 0: it can only be read in order */
-    adcgs_http_head is;  /**< head of the first response; later ones must agree */
-    uint64_t left;       /**< bytes that may still be read */
-    window windows[2];   /**< two, so that a jump, to the index for example, keeps the range before it */
-    int used;            /**< index of the window used last */
-    adcgs_error why;     /**< reason of a read failure */
+    uint64_t size;      /**< 0: it can only be read in order */
+    adcgs_http_head is; /**< head of the first response; later ones must agree */
+    uint64_t left;      /**< bytes that may still be read */
+    window windows[2];  /**< two, so that a jump, to the index for example, keeps the range before it */
+    int used;           /**< index of the window used last */
+    adcgs_error why;    /**< reason of a read failure */
 };
 
 #ifdef HAVE_CURL
@@ -51,7 +51,7 @@ static adcgs_status get_curl(const adcgs_curl **curl, const char *path, adcgs_er
 
 #endif
 
-int adcgs_is_url(const char *name)
+    int adcgs_is_url(const char *name)
 {
     return !strncasecmp(name, "http://", 7) || !strncasecmp(name, "https://", 8);
 }
@@ -60,7 +60,7 @@ int adcgs_is_url(const char *name)
 
 static adcgs_status fail_status(const adcgs_http *h, int status, adcgs_error *error)
 {
-    const char *const what = status == 401 ? " (a password is required)"
+    const char *const what = status == 401   ? " (a password is required)"
                              : status == 206 ? " (a range that was not requested)"
                              : status == 403 ? " (forbidden)"
                              : status == 404 ? " (not found)"
@@ -70,8 +70,8 @@ static adcgs_status fail_status(const adcgs_http *h, int status, adcgs_error *er
 
 static adcgs_status check_size(const adcgs_http *h, uint64_t size, adcgs_error *error)
 {
-    return size <= BYTES_MAX ? ADCGS_OK :
-                               adcgs_fail(error, ADCGS_ERR_LIMIT, "%.160s: %llu bytes, expected at most %llu", h->url,
+    return size <= BYTES_MAX ? ADCGS_OK
+                             : adcgs_fail(error, ADCGS_ERR_LIMIT, "%.160s: %llu bytes, expected at most %llu", h->url,
                                           (unsigned long long)size, (unsigned long long)BYTES_MAX);
 }
 
@@ -119,8 +119,7 @@ static adcgs_status fill(adcgs_http *h, window *w, size_t n, adcgs_error *error)
     if (w->held == n && got == 0)
         return ADCGS_OK;
     w->held = 0;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: the server sent %s bytes than announced", h->url,
-                      got ? "more" : "fewer");
+    return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: the server sent %s bytes than announced", h->url, got ? "more" : "fewer");
 }
 
 /** Fill a window with at most this many bytes from `first` on. */

@@ -15,8 +15,8 @@
 #define CONNECT_MS 15000L /* time limit for a connection */
 #define WAIT_SECONDS 30.0 /* time limit for WAIT_BYTES, after which the transfer fails */
 #define WAIT_BYTES 1024
-#define POLL_MS 200       /* longest delay until an interrupt is noticed */
-#define REDIRECTS 5L /* followed at most */
+#define POLL_MS 200      /* longest delay until an interrupt is noticed */
+#define REDIRECTS 5L     /* followed at most */
 #define HEAD_BYTES 65536 /* upper bound of all headers of a response */
 
 #define TOO_LARGE 100 /* CURLE_TOO_LARGE, which older headers do not define */
@@ -27,16 +27,16 @@ struct adcgs_transfer {
     struct curl_slist *headers;
     const char *url;
     int (*interrupted)(void);
-    int started, done;     /**< a request has been sent; its response has ended */
-    CURLcode result;       /**< valid once done */
+    int started, done; /**< a request has been sent; its response has ended */
+    CURLcode result;   /**< valid once done */
     char reason[CURL_ERROR_SIZE];
-    const char *refused;   /**< reason to refuse the response; NULL: none */
+    const char *refused; /**< reason to refuse the response; NULL: none */
     adcgs_http_head head;
-    size_t head_bytes;     /**< of all heads since the request, those of redirects too */
-    int paused;            /**< more data waits behind the bytes held */
-    double waited;         /**< seconds since WAIT_BYTES came */
+    size_t head_bytes; /**< of all heads since the request, those of redirects too */
+    int paused;        /**< more data waits behind the bytes held */
+    double waited;     /**< seconds since WAIT_BYTES came */
     size_t came;
-    size_t next, held;     /**< bytes[next .. held) have not been read yet */
+    size_t next, held; /**< bytes[next .. held) have not been read yet */
     uint8_t bytes[CURL_MAX_WRITE_SIZE];
 };
 
@@ -89,8 +89,10 @@ static int is_long_line(const adcgs_transfer *t)
 static adcgs_status fail(const adcgs_transfer *t, adcgs_error *error)
 {
     if (is_long_line(t))
-        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: a header line of its response exceeds the %d bytes that libcurl "
-                          "accepts, or memory is exhausted", t->url, CURL_MAX_HTTP_HEADER);
+        return adcgs_fail(error, ADCGS_ERR_IO,
+                          "%.160s: a header line of its response exceeds the %d bytes that libcurl "
+                          "accepts, or memory is exhausted",
+                          t->url, CURL_MAX_HTTP_HEADER);
     const char *const why = t->refused ? t->refused : *t->reason ? t->reason : curl_easy_strerror(t->result);
     return adcgs_fail(error, t->result == CURLE_OUT_OF_MEMORY ? ADCGS_ERR_MEMORY : ADCGS_ERR_IO, "%.160s: %s", t->url, why);
 }

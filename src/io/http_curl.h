@@ -23,8 +23,7 @@ typedef struct adcgs_curl {
      * NULL: the whole resource. same: an ETag or a date; if the resource has changed, the whole is sent. NULL: the range in any
      * case.
      */
-    adcgs_status (*ask)(adcgs_transfer *transfer, const char *range, const char *same, adcgs_http_head *head,
-                        adcgs_error *error);
+    adcgs_status (*ask)(adcgs_transfer *transfer, const char *range, const char *same, adcgs_http_head *head, adcgs_error *error);
     /** Wait for bytes of the body: *got of them, at most `bytes`; 0 at its end. */
     adcgs_status (*read)(adcgs_transfer *transfer, void *buffer, size_t bytes, size_t *got, adcgs_error *error);
     /** As read, but *got is also 0 if no byte comes for a short time; *ended is true at the end. */

@@ -29,9 +29,9 @@ typedef adcgs_status encoder(adcgs_buffer *out, const adcgs_image *image, const 
 
 /** A format. Reading detects it by the first bytes, writing by the extension. */
 typedef struct format {
-    const char *magic[2];      /* NULL: not this one */
+    const char *magic[2]; /* NULL: not this one */
     const char *extensions[6];
-    prober *probe;             /* NULL: OpenImageIO reads it */
+    prober *probe; /* NULL: OpenImageIO reads it */
     reader *read;
     encoder *encode;
 } format;
@@ -213,15 +213,14 @@ adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const cha
 
 struct adcgs_image_rows {
     source from;
-    adcgs_image whole;   /**< for formats without reading by rows */
-    size_t row, at;      /**< values per row; values of `whole` that have been read */
+    adcgs_image whole; /**< for formats without reading by rows */
+    size_t row, at;    /**< values per row; values of `whole` that have been read */
 #ifdef HAVE_ENCODER
     adcgs_png_rows *png;
 #endif
 };
 
-static adcgs_status start_rows(adcgs_image_rows *r, int *width, int *height, int *channels, const char *path,
-                               adcgs_error *error)
+static adcgs_status start_rows(adcgs_image_rows *r, int *width, int *height, int *channels, const char *path, adcgs_error *error)
 {
     const source *s = &r->from;
 #ifdef HAVE_ENCODER
@@ -300,8 +299,7 @@ adcgs_status adcgs_image_tell(adcgs_photo *photo, const char *path, adcgs_error 
 /* ---- Writing ---- */
 
 /** Check the options against our formats; OpenImageIO checks its own formats. */
-static adcgs_status check_options(const adcgs_image_options *options, const char *path, const char *extension,
-                                  adcgs_error *error)
+static adcgs_status check_options(const adcgs_image_options *options, const char *path, const char *extension, adcgs_error *error)
 {
     if (!*extension)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the file name needs an extension that gives the format", path);

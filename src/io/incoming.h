@@ -10,10 +10,10 @@
 #include "io/pipe.h"
 
 typedef struct adcgs_incoming {
-    const char *name;  /**< for messages: "standard input", the path, or the URL */
-    int ended;         /**< no more bytes will come */
+    const char *name; /**< for messages: "standard input", the path, or the URL */
+    int ended;        /**< no more bytes will come */
     adcgs_pipe pipe;
-    adcgs_http *http;  /**< NULL: the source is the pipe */
+    adcgs_http *http; /**< NULL: the source is the pipe */
 } adcgs_incoming;
 
 /**

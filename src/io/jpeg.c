@@ -19,8 +19,20 @@
 
 /* ---- Markers ---- */
 
-enum { STUFFED = 0x00, TEM = 0x01, SOF0 = 0xc0, DHT = 0xc4, JPG = 0xc8, DAC = 0xcc, SOF15 = 0xcf, RST0 = 0xd0, RST7 = 0xd7,
-       SOI = 0xd8, EOI = 0xd9, MARKER = 0xff };
+enum {
+    STUFFED = 0x00,
+    TEM = 0x01,
+    SOF0 = 0xc0,
+    DHT = 0xc4,
+    JPG = 0xc8,
+    DAC = 0xcc,
+    SOF15 = 0xcf,
+    RST0 = 0xd0,
+    RST7 = 0xd7,
+    SOI = 0xd8,
+    EOI = 0xd9,
+    MARKER = 0xff
+};
 
 /** The next marker that matters here. Skips coded data and bytes between segments. */
 static int next_marker(FILE *file)
@@ -125,8 +137,8 @@ adcgs_status adcgs_jpeg_read(FILE *file, adcgs_image *out, const char *path, adc
     rewind(file);
     ADCGS_TRY(adcgs_file_load_open(&data, &size, file, path, FILE_MAX, error));
     tjhandle decoder = tjInitDecompress();
-    const adcgs_status status = decoder ? decode(decoder, data, size, out, path, error)
-                                        : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    const adcgs_status status =
+        decoder ? decode(decoder, data, size, out, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (decoder)
         tjDestroy(decoder);
     free(data);

@@ -11,7 +11,7 @@
 
 #include <stdio.h>
 
-#define ADCGS_JSON_DEPTH 8 /**< nested objects and arrays */
+#define ADCGS_JSON_DEPTH 8   /**< nested objects and arrays */
 #define ADCGS_JSON_DIGITS 10 /**< significant digits in reports; 17 preserve each double */
 
 struct json_t;

@@ -15,7 +15,7 @@ const adcgs_kind *adcgs_kind_at(const char *path)
     uint8_t begin[ADCGS_KIND_BYTES], tail[ADCGS_KIND_TAIL];
     const adcgs_kind *const unknown = adcgs_kind_of((const uint8_t *)"", 0, 0, NULL, path);
     struct stat status = {0}; /* MemorySanitizer of clang 14 does not know that stat() writes it */
-    if (stat(path, &status)) /* without opening it, so that the writer of a pipe does not see a reader come and go */
+    if (stat(path, &status))  /* without opening it, so that the writer of a pipe does not see a reader come and go */
         return unknown;
     if (S_ISDIR(status.st_mode))
         return &folder;

@@ -17,13 +17,13 @@
 typedef enum adcgs_kind_class {
     ADCGS_KIND_UNKNOWN, /**< not in the table: the reader has its own message */
     ADCGS_KIND_FOLDER,
-    ADCGS_KIND_STREAM,  /**< an adcgs stream */
-    ADCGS_KIND_PAGE,    /**< a page for browsers with a stream in it */
+    ADCGS_KIND_STREAM, /**< an adcgs stream */
+    ADCGS_KIND_PAGE,   /**< a page for browsers with a stream in it */
     ADCGS_KIND_IMAGE,
     ADCGS_KIND_VIDEO,
     ADCGS_KIND_SPLATS,
     ADCGS_KIND_POINTS,
-    ADCGS_KIND_SCENE,   /**< cameras and the like, as text */
+    ADCGS_KIND_SCENE, /**< cameras and the like, as text */
     ADCGS_KIND_OTHER,
     ADCGS_KIND_CLASSES
 } adcgs_kind_class;

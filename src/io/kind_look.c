@@ -27,6 +27,7 @@ typedef struct magic {
     adcgs_kind kind;
 } magic;
 
+/* clang-format off */
 #define IMAGE(name, reader) {ADCGS_KIND_IMAGE, name, reader, NULL, 1}
 #define NO_IMAGE(name, advice) {ADCGS_KIND_IMAGE, name, NULL, advice, 0}
 #define VIDEO(name) {ADCGS_KIND_VIDEO, name, NULL, NULL, 1}
@@ -36,10 +37,13 @@ typedef struct magic {
 #define NO_POINTS(name, advice) {ADCGS_KIND_POINTS, name, NULL, advice, 0}
 #define NO_SCENE(name, advice) {ADCGS_KIND_SCENE, name, NULL, advice, 0}
 #define OTHER(name, advice) {ADCGS_KIND_OTHER, name, NULL, advice, 0}
+/* clang-format on */
 #define AT(place, text) place, sizeof text - 1, text
 
 static const magic magics[] = {
-    {AT(0, "\x8b""ADC\r\n\x1a\n"), {ADCGS_KIND_STREAM, "an adcgs stream", NULL, NULL, 1}},
+    {AT(0, "\x8b"
+           "ADC\r\n\x1a\n"),
+     {ADCGS_KIND_STREAM, "an adcgs stream", NULL, NULL, 1}},
     /* Images. */
     {AT(0, "\x89PNG\r\n\x1a\n"), IMAGE("a PNG image", "png")},
     {AT(0, "\xff\xd8\xff"), IMAGE("a JPEG image", "jpeg")},
@@ -83,7 +87,9 @@ static const magic magics[] = {
     {AT(0, "NGSP"), SPLATS("splats (SPZ)")},
     {AT(0, "glTF"), SPLATS("a glTF binary file (GLB)")},
     {AT(0, "Kg\0\0"), NO_SPLATS("splats that change with time (.splatv)", NO_SEQUENCE)},
-    {AT(0, "\x89""4DGS"), NO_SPLATS("splats that change with time (.4dgs)", NO_SEQUENCE)},
+    {AT(0, "\x89"
+           "4DGS"),
+     NO_SPLATS("splats that change with time (.4dgs)", NO_SEQUENCE)},
     {AT(0, "SP4D"), NO_SPLATS("splats that change with time (.splat4d)", NO_SEQUENCE)},
     {AT(0, "DRACO"), POINTS("a Draco file")},
     {AT(0, "\x93NUMPY"), POINTS("an array of NumPy (NPY)")},
@@ -108,10 +114,14 @@ static const magic magics[] = {
     {AT(0, "Rar!"), OTHER("an archive (RAR)", "unpack it first")},
     {AT(257, "ustar"), OTHER("an archive (tar)", "unpack it first")},
     {AT(0, "\x28\xb5\x2f\xfd"), OTHER("a file packed by zstd", "unpack it first")},
-    {AT(0, "\xfd""7zXZ"), OTHER("a file packed by xz", "unpack it first")},
+    {AT(0, "\xfd"
+           "7zXZ"),
+     OTHER("a file packed by xz", "unpack it first")},
     {AT(0, "BZh"), OTHER("a file packed by bzip2", "unpack it first")},
     {AT(0, "%PDF"), OTHER("a PDF document", NULL)},
-    {AT(0, "\x7f""ELF"), OTHER("a program", NULL)},
+    {AT(0, "\x7f"
+           "ELF"),
+     OTHER("a program", NULL)},
 };
 
 /* ---- Kinds that a few bytes do not identify ---- */
@@ -204,8 +214,8 @@ static const adcgs_kind *find_in_tiff(const look *l)
 {
     static const adcgs_kind tiff = IMAGE("a TIFF image", "tiff"), dng = NO_IMAGE("a raw image (DNG)", TO_JPEG),
                             raw = NO_IMAGE("a raw image of a camera", TO_JPEG);
-    static const char *const ends[] = {"nef", "nrw", "arw", "sr2", "srf", "cr2", "pef", "srw", "3fr", "fff", "iiq", "rwl", "erf",
-                                       "dcr", "kdc", "mef", "mos", NULL};
+    static const char *const ends[] = {"nef", "nrw", "arw", "sr2", "srf", "cr2", "pef", "srw", "3fr",
+                                       "fff", "iiq", "rwl", "erf", "dcr", "kdc", "mef", "mos", NULL};
     const int is_big = begins(l, 0, "MM\0") && l->n > 3 && (l->begin[3] == '*' || l->begin[3] == '+');
     if (!is_big && !(begins(l, 0, "II") && l->n > 3 && (l->begin[2] == '*' || l->begin[2] == '+') && !l->begin[3]))
         return NULL;
@@ -381,7 +391,7 @@ static const adcgs_kind *find_packed(const look *l)
 const adcgs_kind *adcgs_kind_of(const uint8_t *begin, size_t n, uint64_t size, const uint8_t *tail, const char *name)
 {
     static const adcgs_kind *(*const finders[])(const look *) = {
-        find_in_boxes, find_in_tiff, find_bitmap,    find_in_archive, find_ply,    find_packed,
+        find_in_boxes, find_in_tiff, find_bitmap,    find_in_archive, find_ply,   find_packed,
         find_ksplat,   find_markup,  find_transport, find_json,       find_splat, find_table,
     };
     const look l = {begin, tail, name, adcgs_extension(name), n, size};

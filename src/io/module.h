@@ -26,7 +26,7 @@ typedef struct adcgs_module {
     pthread_mutex_t lock; /**< initially PTHREAD_MUTEX_INITIALIZER; the members below are initially zero */
     int tried;
     const void *table;
-    char reason[160];     /**< why there is no table */
+    char reason[160]; /**< why there is no table */
 } adcgs_module;
 
 /**
@@ -41,14 +41,14 @@ adcgs_status adcgs_module_get(adcgs_module *module, const void **table, const ch
  * or returns the linked table if config.h disables modules.
  */
 #ifdef MODULES
-#define ADCGS_MODULE_GET(get, type, table, so, what)                                                                    \
-    adcgs_status get(const type **out, const char *path, adcgs_error *error)                                            \
-    {                                                                                                                   \
+#define ADCGS_MODULE_GET(get, type, table, so, what)                                                                     \
+    adcgs_status get(const type **out, const char *path, adcgs_error *error)                                             \
+    {                                                                                                                    \
         static adcgs_module module = {.file = so, .symbol = #table, .purpose = what, .lock = PTHREAD_MUTEX_INITIALIZER}; \
-        const void *found;                                                                                              \
-        const adcgs_status status = adcgs_module_get(&module, &found, path, error);                                     \
-        *out = found;                                                                                                   \
-        return status;                                                                                                  \
+        const void *found;                                                                                               \
+        const adcgs_status status = adcgs_module_get(&module, &found, path, error);                                      \
+        *out = found;                                                                                                    \
+        return status;                                                                                                   \
     }
 #else
 #define ADCGS_MODULE_GET(get, type, table, so, what)                         \

@@ -85,8 +85,8 @@ adcgs_status adcgs_netpbm_read(FILE *file, adcgs_image *out, const char *path, a
     ADCGS_TRY(read_header(file, &head, path, error));
     ADCGS_TRY(adcgs_image_alloc(out, head.width, head.height, head.channels, path, error));
     uint8_t *row = malloc((size_t)head.width * (size_t)head.channels * 2);
-    const adcgs_status status = row ? read_rows(file, &head, row, out, path, error)
-                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    const adcgs_status status =
+        row ? read_rows(file, &head, row, out, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     free(row);
     if (status != ADCGS_OK)
         adcgs_image_free(out);

@@ -24,8 +24,8 @@ typedef struct reader {
     const char *path;
     adcgs_error *error;
     int seen;
-    int item_bytes;       /**< 4 or 8 */
-    uint32_t columns;     /**< required number of columns */
+    int item_bytes;   /**< 4 or 8 */
+    uint32_t columns; /**< required number of columns */
     int n_dimensions;
     uint64_t shape[DIMENSIONS_MAX];
 } reader;

@@ -18,7 +18,7 @@
 #endif
 
 #define FILE_MAX ((uint64_t)4 << 30) /* bytes of an archive */
-#define RATIO_MAX 1100 /* upper bound of deflate's compression ratio */
+#define RATIO_MAX 1100               /* upper bound of deflate's compression ratio */
 
 #define END_BYTES 22
 #define ENTRY_BYTES 46

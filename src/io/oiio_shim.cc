@@ -28,7 +28,8 @@
 
 #include "io/oiio_shim.h"
 
-namespace {
+namespace
+{
 
 #define CONVERT "convert the image to PNG or JPEG first, for instance by heif-convert"
 
@@ -108,8 +109,8 @@ bool same_name(const std::string &a, const char *b)
 /** True for linear light, as declared by the file or implied by its format (EXR), under any of OpenImageIO's names for it. */
 bool is_linear(const OIIO::ImageSpec &spec)
 {
-    static const char *const names[] = {"Linear", "scene_linear", "lin_srgb", "lin_rec709", "lin_rec709_scene",
-                                        "lin_rec709_display"};
+    static const char *const names[] = {"Linear",     "scene_linear",     "lin_srgb",
+                                        "lin_rec709", "lin_rec709_scene", "lin_rec709_display"};
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
     for (const char *name : names)
         if (same_name(space, name))
@@ -285,8 +286,8 @@ adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_image *image, int
     }
     if (image->channels % 2 == 0 && !output->supports("alpha"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no alpha; EXR, PNG and TIFF do", path, extension);
-    ADCGS_TRY((output->supports("ioproxy") ? encode_in_memory : encode_in_file)(memory, *output, image, bits, extension, path,
-                                                                               error));
+    ADCGS_TRY(
+        (output->supports("ioproxy") ? encode_in_memory : encode_in_file)(memory, *output, image, bits, extension, path, error));
     if (memory.empty())
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s files hold no images", path, extension);
     *data = static_cast<uint8_t *>(std::malloc(memory.size()));
@@ -413,4 +414,4 @@ adcgs_status shape_c(adcgs_image *image, int turn, int width, int height, const 
 
 } // namespace
 
-extern "C" const adcgs_oiio adcgs_oiio_table = { PACKAGE_VERSION, probe_c, read_c, encode_c, tell_c, shape_c };
+extern "C" const adcgs_oiio adcgs_oiio_table = {PACKAGE_VERSION, probe_c, read_c, encode_c, tell_c, shape_c};

@@ -11,8 +11,8 @@
 typedef struct adcgs_pipe {
     const char *name; /**< for messages */
     int fd;
-    int own;          /**< fd must be closed */
-    int ended;        /**< no more bytes will come */
+    int own;   /**< fd must be closed */
+    int ended; /**< no more bytes will come */
 } adcgs_pipe;
 
 /**

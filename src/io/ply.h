@@ -29,7 +29,7 @@ typedef struct adcgs_ply_property {
     adcgs_ply_type type;
     adcgs_ply_type count_type; /**< of a list */
     int is_list;
-    int role;                  /**< assigned by the reader; -1, the initial value, if it ignores the property */
+    int role; /**< assigned by the reader; -1, the initial value, if it ignores the property */
 } adcgs_ply_property;
 
 typedef struct adcgs_ply_element {

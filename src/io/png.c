@@ -9,7 +9,7 @@
 
 #include <spng.h>
 
-#define LEVEL 4 /* zlib's level; with one filter it takes a quarter of the defaults' time for 10 % more bytes */
+#define LEVEL 4               /* zlib's level; with one filter it takes a quarter of the defaults' time for 10 % more bytes */
 #define CHUNK_MAX (64u << 20) /* bytes of a chunk without pixels, and of all that are kept */
 
 /* ---- Errors ---- */
@@ -41,7 +41,8 @@ typedef struct layout {
 
 static const struct {
     int narrow, wide; /* formats for up to 8 bits, and for 16 */
-} formats[4] = { /* by channels */
+} formats[4] = {
+    /* by channels */
     {SPNG_FMT_G8, SPNG_FMT_PNG},
     {SPNG_FMT_GA8, SPNG_FMT_GA16},
     {SPNG_FMT_RGB8, SPNG_FMT_PNG},

@@ -15,7 +15,7 @@ typedef struct adcgs_points {
     uint32_t n;
     double (*position)[3]; /**< finite; binary32 values, except for a cloud too far from the origin */
     uint8_t (*colour)[3];
-    int coloured;         /**< 0: the file has no colours, and all are mid-grey */
+    int coloured; /**< 0: the file has no colours, and all are mid-grey */
 } adcgs_points;
 
 /** Positions are uninitialised, colours grey. */

@@ -17,13 +17,15 @@ static ADCGS_MODULE_GET(get_mpi, adcgs_mpi, adcgs_mpi_table, "adcgs_mpi.so", "ra
 static adcgs_status get_mpi(const adcgs_mpi **mpi, const char *path, adcgs_error *error)
 {
     *mpi = NULL;
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: ranks need MPI, which this build lacks: install libopenmpi-dev, "
-                      "configure and build again", path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED,
+                      "%s: ranks need MPI, which this build lacks: install libopenmpi-dev, "
+                      "configure and build again",
+                      path);
 }
 
 #endif
 
-static int number_of(const char *name)
+    static int number_of(const char *name)
 {
     const char *const text = getenv(name);
     return text ? atoi(text) : 0;
@@ -38,7 +40,7 @@ int adcgs_ranks_expected(void)
 
 adcgs_status adcgs_ranks_open(adcgs_ranks *r, adcgs_error *error)
 {
-    *r = (adcgs_ranks){ .size = 0 };
+    *r = (adcgs_ranks){.size = 0};
     ADCGS_TRY(get_mpi(&r->mpi, "mpirun", error));
     return r->mpi->open(r, error);
 }

@@ -29,7 +29,7 @@ struct adcgs_sink {
     adcgs_sink_config config;
     const kind *what;
     adcgs_sink_extras extras; /**< of the frame being written */
-    FILE *file; /**< of a stream: standard output or the atomic file */
+    FILE *file;               /**< of a stream: standard output or the atomic file */
     adcgs_atomic atomic;
     adcgs_video_writer *video;
 };

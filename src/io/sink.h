@@ -20,17 +20,17 @@ typedef enum adcgs_depth {
 } adcgs_depth;
 
 typedef struct adcgs_sink_config {
-    const char *target;  /**< "-", a file, or for images a pattern with %d or %04d */
-    const char *format;  /**< NULL: by the target's extension, Y4M for "-". Else y4m, raw, null, an extension of images (for
+    const char *target; /**< "-", a file, or for images a pattern with %d or %04d */
+    const char *format; /**< NULL: by the target's extension, Y4M for "-". Else y4m, raw, null, an extension of images (for
                               any target name), or an extension of videos, which the target must have */
     adcgs_depth depth;
-    int linear;          /**< EXR only: colours in linear light */
-    double frame_rate;   /**< for Y4M and videos */
+    int linear;        /**< EXR only: colours in linear light */
+    double frame_rate; /**< for Y4M and videos */
     int width, height;
-    int frames;          /**< number of frames; several images need a pattern */
-    int has_alpha;       /**< frames have alpha, which EXR, PNG, TIFF and some videos support */
+    int frames;                     /**< number of frames; several images need a pattern */
+    int has_alpha;                  /**< frames have alpha, which EXR, PNG, TIFF and some videos support */
     const adcgs_video_style *video; /**< coding of a video, except alpha; NULL: defaults of the container */
-    int has_z;           /**< frames have depth, which EXR supports */
+    int has_z;                      /**< frames have depth, which EXR supports */
 } adcgs_sink_config;
 
 /** Data that may accompany a frame's colours. */

@@ -20,12 +20,12 @@
 typedef struct writer {
     const adcgs_splats *s;
     adcgs_zip zip;
-    uint32_t (*at)[3]; /**< [n] positions quantised to 16 bits, z y x, in Morton order (z's bits first) */
-    uint32_t *order;  /**< [n] index of each splat in that order, which is also that of the pixels */
+    uint32_t (*at)[3];      /**< [n] positions quantised to 16 bits, z y x, in Morton order (z's bits first) */
+    uint32_t *order;        /**< [n] index of each splat in that order, which is also that of the pixels */
     double low[3], high[3]; /**< bounds of the positions' logarithms */
     float scales[ADCGS_CODEBOOK], colours[ADCGS_CODEBOOK];
     int width, height;
-    uint8_t *pixels;  /**< RGBA */
+    uint8_t *pixels; /**< RGBA */
 } writer;
 
 static uint8_t to_byte(double value)

@@ -14,9 +14,9 @@
 
 static void place(adcgs_splats *s, float *block, size_t slots)
 {
-    float **const arrays[ARRAYS] = {&s->mean[0],     &s->mean[1],     &s->mean[2],     &s->scale[0],  &s->scale[1],
-                                    &s->scale[2],    &s->rotation[0], &s->rotation[1], &s->rotation[2], &s->rotation[3],
-                                    &s->opacity,     &s->colour[0],   &s->colour[1],   &s->colour[2]};
+    float **const arrays[ARRAYS] = {&s->mean[0],  &s->mean[1],     &s->mean[2],     &s->scale[0],    &s->scale[1],
+                                    &s->scale[2], &s->rotation[0], &s->rotation[1], &s->rotation[2], &s->rotation[3],
+                                    &s->opacity,  &s->colour[0],   &s->colour[1],   &s->colour[2]};
     for (size_t i = 0; i < ARRAYS; i++)
         *arrays[i] = block + i * slots;
     for (size_t i = 0; i < slots; i++)

@@ -26,16 +26,16 @@ enum { ADCGS_SPLATS_UP_UNKNOWN, ADCGS_SPLATS_Y_UP, ADCGS_SPLATS_Z_UP, ADCGS_SPLA
  */
 typedef struct adcgs_splats {
     uint32_t n;
-    uint8_t axes;      /**< ADCGS_SPLATS_Y_UP..., if the file or the stream gives them */
+    uint8_t axes;        /**< ADCGS_SPLATS_Y_UP..., if the file or the stream gives them */
     uint8_t antialiased; /**< trained with antialiasing: each view scales opacities (data/splat_views.h) */
-    double offset[3];  /**< added to mean gives the position; nonzero for a scene so far from the origin that binary32 is too
+    double offset[3];    /**< added to mean gives the position; nonzero for a scene so far from the origin that binary32 is too
                             coarse */
     float *mean[3], *scale[3], *rotation[4]; /**< world units; standard deviations, > 0; unit quaternion w x y z */
-    float *opacity;    /**< 0..1 */
-    float *colour[3];  /**< 0.5 + ADCGS_SPLATS_DC f_dc: RGB seen from any direction, not clipped */
-    int degree;        /**< of the colours' spherical harmonics, 0..3; 0: colours do not depend on the viewing direction */
-    float *harmonics;  /**< [n][3][(degree+1)^2 - 1], those above degree 0, the file's f_rest_*; NULL with degree 0 */
-    float *block;      /**< memory of the arrays */
+    float *opacity;                          /**< 0..1 */
+    float *colour[3];                        /**< 0.5 + ADCGS_SPLATS_DC f_dc: RGB seen from any direction, not clipped */
+    int degree;       /**< of the colours' spherical harmonics, 0..3; 0: colours do not depend on the viewing direction */
+    float *harmonics; /**< [n][3][(degree+1)^2 - 1], those above degree 0, the file's f_rest_*; NULL with degree 0 */
+    float *block;     /**< memory of the arrays */
 } adcgs_splats;
 
 /** n invisible splats of degree 0. ADCGS_ERR_DATA, naming path, for more than ADCGS_SPLATS_MAX. */

@@ -12,11 +12,11 @@
 
 #include <math.h>
 
-#define POLAR_STEPS 60   /* iterations of Newton's method, which converges quadratically */
-#define EVEN 1e-6        /* relative deviation from a uniform scale that still counts as one */
-#define SWEEPS 30 /* of Jacobi's method, at most */
+#define POLAR_STEPS 60         /* iterations of Newton's method, which converges quadratically */
+#define EVEN 1e-6              /* relative deviation from a uniform scale that still counts as one */
+#define SWEEPS 30              /* of Jacobi's method, at most */
 #define SMALLEST 1.8048514e-35 /* e^-80: lower bound of scales, which flat splats get */
-#define LARGEST 5.5406223e34 /* e^80: upper bound of scales */
+#define LARGEST 5.5406223e34   /* e^80: upper bound of scales */
 
 typedef struct m3 {
     double m[3][3];

@@ -13,14 +13,14 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define LOG_SCALE_MAX 80.0f /* upper bound of a scale's logarithm */
+#define LOG_SCALE_MAX 80.0f  /* upper bound of a scale's logarithm */
 #define LOG_SCALE_MIN -80.0f /* the scale of a flat axis, as in GLB */
 
 /* Roles of properties; f_rest_i has the role REST + i. */
 enum { MEAN, DC = 3, OPACITY = 6, SCALE = 7, ROTATION = 10, REST = 14, REST_MAX = 45 };
 
-static const char *const names[REST] = {"x",       "y",       "z",       "f_dc_0",  "f_dc_1", "f_dc_2", "opacity",
-                                        "scale_0", "scale_1", "scale_2", "rot_0",   "rot_1",  "rot_2",  "rot_3"};
+static const char *const names[REST] = {"x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
+                                        "scale_0", "scale_1", "scale_2", "rot_0",  "rot_1",  "rot_2",  "rot_3"};
 
 typedef struct taker {
     adcgs_splats *out;
@@ -86,8 +86,10 @@ static adcgs_status find_rest(adcgs_ply *ply, int *out, size_t *n_rest)
         ADCGS_TRY(give_role(ply, name, REST + (int)*n_rest));
     }
     if (*n_rest == REST_MAX && adcgs_ply_find(ply, "f_rest_45"))
-        return adcgs_fail(ply->error, ADCGS_ERR_UNSUPPORTED, "%s: harmonics of degree 4 or more (it has f_rest_45), expected "
-                          "degree 3 at most", ply->path);
+        return adcgs_fail(ply->error, ADCGS_ERR_UNSUPPORTED,
+                          "%s: harmonics of degree 4 or more (it has f_rest_45), expected "
+                          "degree 3 at most",
+                          ply->path);
     for (int degree = 0; degree <= ADCGS_SPLATS_DEGREE_MAX; degree++)
         if (*n_rest == 3 * ((size_t)(degree + 1) * (size_t)(degree + 1) - 1)) {
             *out = degree;

@@ -20,9 +20,9 @@ static int rest_count(int degree)
 
 static void put_header(FILE *file, const adcgs_splats *s, const adcgs_splats_style *style)
 {
-    static const char *const names[WRITTEN] = {"x",      "y",       "z",       "nx",      "ny",      "nz",
-                                               "f_dc_0", "f_dc_1",  "f_dc_2",  "opacity", "scale_0", "scale_1",
-                                               "scale_2", "rot_0",  "rot_1",   "rot_2",   "rot_3"};
+    static const char *const names[WRITTEN] = {"x",       "y",      "z",      "nx",      "ny",      "nz",
+                                               "f_dc_0",  "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1",
+                                               "scale_2", "rot_0",  "rot_1",  "rot_2",   "rot_3"};
     fprintf(file, "ply\nformat binary_little_endian 1.0\ncomment %s\n%s", style->comment,
             s->antialiased ? "comment SplatRenderMode: mip\n" : "");
     if (adcgs_offset_is(s->offset))

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 
 #define FILE_MAX ((uint64_t)8 << 30) /* bytes of a file that is read */
-#define BEGINNING 4 /* bytes that identify a format */
+#define BEGINNING 4                  /* bytes that identify a format */
 
 int adcgs_splats_is(const char *path)
 {
@@ -41,10 +41,10 @@ static void drop_zeros(adcgs_splats *s)
 adcgs_status adcgs_splats_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
 {
     *out = (adcgs_splats){0};
-    const adcgs_status status =
-        adcgs_ply_is(data, bytes)   ? adcgs_splats_parse_ply(out, data, bytes, path, error)
-        : adcgs_spz_is(data, bytes) ? adcgs_spz_parse(out, data, bytes, path, error)
-        : adcgs_glb_is(data, bytes) ? adcgs_glb_parse(out, data, bytes, path, error)
+    const adcgs_status status = adcgs_ply_is(data, bytes)   ? adcgs_splats_parse_ply(out, data, bytes, path, error)
+                                : adcgs_spz_is(data, bytes) ? adcgs_spz_parse(out, data, bytes, path, error)
+                                : adcgs_glb_is(data, bytes)
+                                    ? adcgs_glb_parse(out, data, bytes, path, error)
                                     : adcgs_fail(error, ADCGS_ERR_DATA, "%s: not splats, expected PLY, SPZ or GLB", path);
     if (status == ADCGS_OK)
         drop_zeros(out);

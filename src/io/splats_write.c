@@ -19,8 +19,7 @@ static const struct {
     const char *extension;
     put_fn put;
     int turns; /**< files have y up; splats with known axes are turned */
-} formats[] = {{"ply", adcgs_splats_put_ply, 0}, {"spz", adcgs_spz_put, 1}, {"glb", adcgs_glb_put, 1},
-             {"sog", adcgs_sog_put, 1}};
+} formats[] = {{"ply", adcgs_splats_put_ply, 0}, {"spz", adcgs_spz_put, 1}, {"glb", adcgs_glb_put, 1}, {"sog", adcgs_sog_put, 1}};
 
 #define FORMATS (sizeof formats / sizeof *formats)
 
@@ -81,8 +80,7 @@ static adcgs_status turn_up(adcgs_splats *out, const adcgs_splats *s, const char
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_splats_write(const adcgs_splats *splats, const adcgs_splats_style *style, const char *path,
-                                adcgs_error *error)
+adcgs_status adcgs_splats_write(const adcgs_splats *splats, const adcgs_splats_style *style, const char *path, adcgs_error *error)
 {
     adcgs_atomic atomic;
     adcgs_splats turned = {0};

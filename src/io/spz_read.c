@@ -20,14 +20,14 @@ int adcgs_spz_is(const uint8_t *data, size_t bytes)
 #include <zlib.h>
 #include <zstd.h>
 
-#define OLD_HEADER 16           /* of versions 2 and 3, packed together with the columns */
-#define GZIP_RATIO 1032         /* upper bound of deflate's compression ratio */
+#define OLD_HEADER 16                  /* of versions 2 and 3, packed together with the columns */
+#define GZIP_RATIO 1032                /* upper bound of deflate's compression ratio */
 #define ZSTD_RATIO ((uint64_t)1 << 17) /* above zstd's compression ratio: a block of 128 KiB takes four bytes */
-#define INPUT_PART ((size_t)1 << 30) /* bytes passed to zlib at once */
-#define FRACTION_MAX 30 /* fractional bits accepted in a header */
-#define HAS_EXTENSIONS 2        /* a flag */
-#define AXES_EXTENSION 0xadbe0003u /* type of the extension that declares the axes */
-#define AXES_RIGHT_UP_BACK 4u   /* 0 means unspecified, which is treated the same */
+#define INPUT_PART ((size_t)1 << 30)   /* bytes passed to zlib at once */
+#define FRACTION_MAX 30                /* fractional bits accepted in a header */
+#define HAS_EXTENSIONS 2               /* a flag */
+#define AXES_EXTENSION 0xadbe0003u     /* type of the extension that declares the axes */
+#define AXES_RIGHT_UP_BACK 4u          /* 0 means unspecified, which is treated the same */
 
 static const char *const names[ADCGS_SPZ_COLUMNS] = {"positions", "opacities", "colours", "scales", "rotations", "harmonics"};
 
@@ -37,8 +37,8 @@ typedef struct reader {
     uint32_t version, n;
     int degree, fraction_bits, antialiased;
     size_t sizes[ADCGS_SPZ_COLUMNS];
-    uint8_t *column; /**< the current column; has room for the largest */
-    z_stream gzip;   /**< of versions 2 and 3 */
+    uint8_t *column;                 /**< the current column; has room for the largest */
+    z_stream gzip;                   /**< of versions 2 and 3 */
     const uint8_t *entry, *at, *end; /**< of version 4: the next column's table entry and stream, the file's end */
 } reader;
 
@@ -124,10 +124,10 @@ static adcgs_status take_header(reader *r, const uint8_t *header)
     if (r->degree > ADCGS_SPLATS_DEGREE_MAX)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: harmonics of degree %d, expected 0 to 3", r->path, r->degree);
     if (r->fraction_bits > FRACTION_MAX)
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %d fractional bits, expected at most %d", r->path,
-                          r->fraction_bits, FRACTION_MAX);
-    const size_t n = r->n, per[ADCGS_SPZ_COLUMNS] = {9, 1, 3, 3, r->version == 2 ? 3 : 4,
-                                                     3 * (size_t)((r->degree + 1) * (r->degree + 1) - 1)};
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %d fractional bits, expected at most %d", r->path, r->fraction_bits,
+                          FRACTION_MAX);
+    const size_t n = r->n, per[ADCGS_SPZ_COLUMNS] =
+                               {9, 1, 3, 3, r->version == 2 ? 3 : 4, 3 * (size_t)((r->degree + 1) * (r->degree + 1) - 1)};
     for (int c = 0; c < ADCGS_SPZ_COLUMNS; c++)
         r->sizes[c] = n * per[c];
     return ADCGS_OK;
@@ -304,7 +304,7 @@ static void take_harmonics(const reader *r, adcgs_splats *s)
 static adcgs_status take_columns(reader *r, adcgs_splats *s)
 {
     static void (*const takes[])(const reader *, adcgs_splats *) = {take_positions, take_opacities, take_colours,
-                                                                   take_scales,    take_rotations, take_harmonics};
+                                                                    take_scales,    take_rotations, take_harmonics};
     for (int c = 0; c < ADCGS_SPZ_HARMONICS + (r->degree > 0); c++) {
         ADCGS_TRY(next_column(r, (adcgs_spz_column)c));
         takes[c](r, s);

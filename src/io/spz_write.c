@@ -11,7 +11,7 @@
 #include <zstd.h>
 
 #define COLUMNS ADCGS_SPZ_HARMONICS /* harmonics are not written */
-#define FRACTION_MAX 23 /* fractional bits of a position */
+#define FRACTION_MAX 23             /* fractional bits of a position */
 #define POSITION_MAX 8388607.0      /* 2^23 - 1 */
 #define LEVEL 12                    /* zstd's level; higher ones save less than 1 % of these columns */
 
@@ -109,7 +109,7 @@ typedef struct packed {
 static int pack_columns(packed *p, uint8_t *column, const adcgs_splats *s, int bits)
 {
     static size_t (*const fills[COLUMNS])(uint8_t *, const adcgs_splats *, int) = {fill_positions, fill_opacities, fill_colours,
-                                                                                 fill_scales, fill_rotations};
+                                                                                   fill_scales, fill_rotations};
     for (int c = 0; c < COLUMNS; c++) {
         p->raw[c] = fills[c](column, s, bits);
         const size_t room = ZSTD_compressBound(p->raw[c]);

@@ -44,7 +44,7 @@ static ADCGS_MODULE_GET(get_ffmpeg, adcgs_ffmpeg, adcgs_ffmpeg_table, "adcgs_vid
 
 int adcgs_is_video(const char *path)
 {
-    static const char *const extensions[] = {"mp4", "m4v", "mov", "mkv", "webm", "avi",  "mpg", "mpeg", "mts", "m2ts",
+    static const char *const extensions[] = {"mp4", "m4v", "mov", "mkv", "webm", "avi", "mpg", "mpeg", "mts",  "m2ts",
                                              "ts",  "wmv", "flv", "ogv", "3gp",  "ivf", "mxf", "h264", "hevc", "obu"};
     const char *extension = adcgs_extension(path);
     for (size_t i = 0; i < ADCGS_COUNTOF(extensions); i++)

@@ -15,9 +15,9 @@
 typedef struct adcgs_video adcgs_video;
 
 typedef struct adcgs_video_info {
-    int width, height;    /**< as shown: rotation applied, square pixels */
-    int64_t frames;       /**< counted; the header's number is not trusted */
-    adcgs_fps rate;      /**< the mean rate; always known */
+    int width, height; /**< as shown: rotation applied, square pixels */
+    int64_t frames;    /**< counted; the header's number is not trusted */
+    adcgs_fps rate;    /**< the mean rate; always known */
 } adcgs_video_info;
 
 /** True if the name ends like a video file's (mp4, mov, mkv, webm, avi, m4v, ...). */
@@ -47,8 +47,8 @@ typedef struct adcgs_video_style {
     const char *options; /**< for the encoder, in FFmpeg's form: "name=value:name=value"; also pix_fmt. NULL: none */
     double crf;          /**< constant rate factor, if has_crf */
     int has_crf;
-    uint64_t bit_rate;   /**< bits per second; 0: by quality */
-    int has_alpha;       /**< frames have alpha, which the codec must support */
+    uint64_t bit_rate; /**< bits per second; 0: by quality */
+    int has_alpha;     /**< frames have alpha, which the codec must support */
 } adcgs_video_style;
 
 /** Start a video. Container by extension; BT.709 of limited range, or RGB, tagged accordingly. */

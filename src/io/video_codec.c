@@ -15,9 +15,9 @@
 #define BITS_PER_PIXEL 1 /* for encoders without constant quality */
 
 typedef struct codec {
-    const char *name, *family;  /* FFmpeg's encoder, and the codec's common name */
-    const char *options;        /* in FFmpeg's form, for little loss; "": by bit rate */
-    int even;                   /* width and height must be even */
+    const char *name, *family;             /* FFmpeg's encoder, and the codec's common name */
+    const char *options;                   /* in FFmpeg's form, for little loss; "": by bit rate */
+    int even;                              /* width and height must be even */
     enum AVPixelFormat format, with_alpha; /* NONE: no alpha */
 } codec;
 

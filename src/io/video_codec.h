@@ -8,7 +8,7 @@
 #include <libavcodec/avcodec.h>
 
 typedef struct adcgs_video_codec {
-    const char *container;     /**< as FFmpeg calls it */
+    const char *container; /**< as FFmpeg calls it */
     const AVCodec *encoder;
     AVDictionary *options;     /**< for avcodec_open2() */
     enum AVPixelFormat format; /**< a format that adcgs_video_planes_take() accepts */

@@ -17,10 +17,10 @@ typedef struct adcgs_video_encoder adcgs_video_encoder;
 
 /** Output of an encoder. */
 typedef struct adcgs_video_target {
-    FILE *file;           /**< written and sought in, not closed */
-    const char *path;     /**< its extension gives the container; also for messages; must outlive the encoder */
-    int width, height;    /**< of the frames */
-    int rate[2];          /**< frames per second: numerator and denominator, > 0 */
+    FILE *file;              /**< written and sought in, not closed */
+    const char *path;        /**< its extension gives the container; also for messages; must outlive the encoder */
+    int width, height;       /**< of the frames */
+    int rate[2];             /**< frames per second: numerator and denominator, > 0 */
     adcgs_video_style style; /**< its strings are not used after begin() */
 } adcgs_video_target;
 

@@ -24,8 +24,7 @@ int adcgs_video_frame_bad(const AVFrame *frame)
 
 /* ---- Packets ---- */
 
-static adcgs_status append(adcgs_video_index *index, uint32_t *room, const AVPacket *packet, const char *path,
-                           adcgs_error *error)
+static adcgs_status append(adcgs_video_index *index, uint32_t *room, const AVPacket *packet, const char *path, adcgs_error *error)
 {
     if (index->n == FRAMES_MAX)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: more than %u frames", path, FRAMES_MAX);

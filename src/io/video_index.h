@@ -6,9 +6,9 @@
 #include "io/video_input.h"
 
 typedef struct adcgs_video_packet {
-    int64_t pts;   /**< presentation timestamp */
-    uint8_t key;   /**< decoding can begin here */
-    uint8_t bad;   /**< it cannot be decoded */
+    int64_t pts; /**< presentation timestamp */
+    uint8_t key; /**< decoding can begin here */
+    uint8_t bad; /**< it cannot be decoded */
 } adcgs_video_packet;
 
 typedef struct adcgs_video_index {

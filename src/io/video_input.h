@@ -13,11 +13,11 @@
 #include <libavformat/avformat.h>
 
 typedef struct adcgs_video_input {
-    int fd;            /**< the caller's */
-    const char *path;  /**< for messages */
+    int fd;           /**< the caller's */
+    const char *path; /**< for messages */
     AVIOContext *io;
     AVFormatContext *format;
-    AVStream *stream;  /**< the one to decode; others are ignored */
+    AVStream *stream; /**< the one to decode; others are ignored */
     AVCodecContext *codec;
 } adcgs_video_input;
 

@@ -22,13 +22,13 @@ typedef struct source {
     const AVPixFmtDescriptor *desc;
     const uint8_t *data[4];
     int width, height;
-    float zero[3], scale[3];  /* value = (sample - zero) * scale: 0..1, chroma -0.5..0.5 */
-    adcgs_ycbcr weights;      /* not used for RGB */
-    float from[2];            /* offset of the first chroma sample from the first luma sample, right and down [pixels] */
-    uint16_t *samples;        /* one row as stored */
-    int (*column)[2];         /* for each column of pixels, the chroma columns before and after it */
-    float *right;             /* weight of the chroma column after it */
-    float *blend, *row[3];    /* one row of chroma as stored; one row of pixels for each component */
+    float zero[3], scale[3]; /* value = (sample - zero) * scale: 0..1, chroma -0.5..0.5 */
+    adcgs_ycbcr weights;     /* not used for RGB */
+    float from[2];           /* offset of the first chroma sample from the first luma sample, right and down [pixels] */
+    uint16_t *samples;       /* one row as stored */
+    int (*column)[2];        /* for each column of pixels, the chroma columns before and after it */
+    float *right;            /* weight of the chroma column after it */
+    float *blend, *row[3];   /* one row of chroma as stored; one row of pixels for each component */
 } source;
 
 static int is_rgb(const source *s)
@@ -56,9 +56,8 @@ static adcgs_status choose_weights(source *s, const char *name, adcgs_error *err
         enum AVColorSpace space;
         adcgs_ycbcr weights;
     } known[] = {
-        {AVCOL_SPC_BT709, ADCGS_YCBCR_709},         {AVCOL_SPC_BT470BG, ADCGS_YCBCR_601},
-        {AVCOL_SPC_SMPTE170M, ADCGS_YCBCR_601},     {AVCOL_SPC_FCC, {0.30f, 0.11f}},
-        {AVCOL_SPC_SMPTE240M, {0.212f, 0.087f}},    {AVCOL_SPC_BT2020_NCL, {0.2627f, 0.0593f}},
+        {AVCOL_SPC_BT709, ADCGS_YCBCR_709}, {AVCOL_SPC_BT470BG, ADCGS_YCBCR_601},    {AVCOL_SPC_SMPTE170M, ADCGS_YCBCR_601},
+        {AVCOL_SPC_FCC, {0.30f, 0.11f}},    {AVCOL_SPC_SMPTE240M, {0.212f, 0.087f}}, {AVCOL_SPC_BT2020_NCL, {0.2627f, 0.0593f}},
     };
     const enum AVColorSpace space = s->frame->colorspace;
     if (is_rgb(s) || is_grey(s))
@@ -81,8 +80,8 @@ static adcgs_status choose_weights(source *s, const char *name, adcgs_error *err
 /** Check for integer samples of at most 16 bits, Y Cb Cr or RGB or grey. */
 static adcgs_status check_format(const source *s, const char *name, adcgs_error *error)
 {
-    const uint64_t strange = AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_BAYER |
-                             AV_PIX_FMT_FLAG_FLOAT;
+    const uint64_t strange =
+        AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_BAYER | AV_PIX_FMT_FLAG_FLOAT;
     const enum AVPixelFormat format = (enum AVPixelFormat)s->frame->format;
     int good = s->desc && !(s->desc->flags & strange) && format != AV_PIX_FMT_XYZ12LE && format != AV_PIX_FMT_XYZ12BE;
     for (int c = 0; good && c < s->desc->nb_components; c++)

@@ -23,7 +23,7 @@ typedef struct source {
     const adcgs_frame *frame;
     const float *alpha; /**< NULL: all 1 */
     int is_rgb;
-    int width;          /**< of the rows: at least the frame's */
+    int width; /**< of the rows: at least the frame's */
 } source;
 
 /** Convert one row to `width` values of each component. Premultiplied colours become straight. */
@@ -59,9 +59,16 @@ static samples component(const AVFrame *to, const AVPixFmtDescriptor *format, in
     const int is_full = (format->flags & AV_PIX_FMT_FLAG_RGB) != 0 || c == ALPHA;
     const float unit = (float)(1 << (d->depth - 8)), most = (float)((1 << d->depth) - 1);
     return (samples){.at = to->data[d->plane] + (ptrdiff_t)y * to->linesize[d->plane] + d->offset,
-                     .step = d->step, .shift = d->shift, .wide = d->depth + d->shift > 8,
-                     .low = (is_full ? 0.0f : c ? 128.0f * unit : 16.0f * unit) + 0.5f,
-                     .span = is_full ? most : c ? 224.0f * unit : 219.0f * unit};
+                     .step = d->step,
+                     .shift = d->shift,
+                     .wide = d->depth + d->shift > 8,
+                     .low = (is_full ? 0.0f
+                             : c     ? 128.0f * unit
+                                     : 16.0f * unit) +
+                            0.5f,
+                     .span = is_full ? most
+                             : c     ? 224.0f * unit
+                                     : 219.0f * unit};
 }
 
 static void put(const samples *to, int x, float value)
@@ -109,8 +116,8 @@ static void put_rows(AVFrame *to, const AVPixFmtDescriptor *format, const float 
 
 int adcgs_video_planes_take(enum AVPixelFormat format)
 {
-    static const uint64_t strange = AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_PAL |
-                                    AV_PIX_FMT_FLAG_BAYER | AV_PIX_FMT_FLAG_FLOAT;
+    static const uint64_t strange =
+        AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BAYER | AV_PIX_FMT_FLAG_FLOAT;
     const uint16_t probe = 1;
     const AVPixFmtDescriptor *const d = av_pix_fmt_desc_get(format);
     const int big = *(const uint8_t *)&probe == 0, is_big = d && (d->flags & AV_PIX_FMT_FLAG_BE);

@@ -17,24 +17,24 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define AHEAD 8 /* key frames at most this many packets ahead are reached by decoding, not by seeking */
+#define AHEAD 8         /* key frames at most this many packets ahead are reached by decoding, not by seeking */
 #define DEFAULT_RATE 25 /* frames per second of a file without a rate */
 
 struct adcgs_video_reader {
     adcgs_video_input input;
     adcgs_video_index index;
-    char *path, *name;  /* name: of a frame, for messages */
+    char *path, *name; /* name: of a frame, for messages */
     size_t name_size;
-    int width, height;  /* of the first frame, as shown; 0 before it */
+    int width, height; /* of the first frame, as shown; 0 before it */
     AVPacket *packet;
-    AVFrame *frame;     /* the last decoded frame */
-    int64_t last;       /* its index; -1: none */
-    int64_t place;      /* number of the last packet sent to the decoder, -1 before the first */
-    int64_t begun;      /* number of the key packet where decoding began, -1 for the file's beginning */
-    int known;          /* decoding can continue from here */
-    int pending;        /* the packet has been read, but not decoded */
-    int at_end;         /* all packets have been read */
-    int code;           /* FFmpeg's code of the last fault */
+    AVFrame *frame; /* the last decoded frame */
+    int64_t last;   /* its index; -1: none */
+    int64_t place;  /* number of the last packet sent to the decoder, -1 before the first */
+    int64_t begun;  /* number of the key packet where decoding began, -1 for the file's beginning */
+    int known;      /* decoding can continue from here */
+    int pending;    /* the packet has been read, but not decoded */
+    int at_end;     /* all packets have been read */
+    int code;       /* FFmpeg's code of the last fault */
 };
 
 /* ---- Place ---- */

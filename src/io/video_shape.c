@@ -83,8 +83,8 @@ adcgs_status adcgs_video_turn(adcgs_image *image, const int32_t *matrix, const c
     if (!across && !mirror_x && !mirror_y)
         return ADCGS_OK;
     adcgs_image turned;
-    ADCGS_TRY(adcgs_image_alloc(&turned, across ? image->height : image->width, across ? image->width : image->height, 3, name,
-                                error));
+    ADCGS_TRY(
+        adcgs_image_alloc(&turned, across ? image->height : image->width, across ? image->width : image->height, 3, name, error));
     move_pixels(image, &turned, across, mirror_x, mirror_y);
     adcgs_image_free(image);
     *image = turned;

@@ -15,9 +15,9 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define IO_BYTES 65536 /* of the buffer for FFmpeg */
-#define THREADS 4            /* fixed, since the encoders' output depends on it */
-#define KEY_SECONDS 2        /* between key frames, at most KEY_FRAMES_MAX frames */
+#define IO_BYTES 65536     /* of the buffer for FFmpeg */
+#define THREADS 4          /* fixed, since the encoders' output depends on it */
+#define KEY_SECONDS 2      /* between key frames, at most KEY_FRAMES_MAX frames */
 #define KEY_FRAMES_MAX 250 /* frames from one key frame to the next */
 
 struct adcgs_video_encoder {
@@ -119,8 +119,10 @@ static adcgs_status open_codec(adcgs_video_encoder *e, adcgs_video_codec *chosen
     set_codec(e, chosen);
     const int code = avcodec_open2(e->codec, chosen->encoder, &chosen->options);
     if (code < 0)
-        return fail(e, code, e->target.style.options || e->target.style.has_crf ? "encode with these options"
-                                                                                : "encode frames of this size", error);
+        return fail(e, code,
+                    e->target.style.options || e->target.style.has_crf ? "encode with these options"
+                                                                       : "encode frames of this size",
+                    error);
     const AVDictionaryEntry *const unknown = av_dict_get(chosen->options, "", NULL, AV_DICT_IGNORE_SUFFIX);
     if (unknown)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the encoder %s has no option %s", e->target.path, chosen->encoder->name,
@@ -244,12 +246,11 @@ static adcgs_status encode(adcgs_video_encoder *e, const AVFrame *frame, adcgs_e
     return fail(e, code, "encode", error);
 }
 
-adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *e, const adcgs_frame *frame, const float *alpha,
-                                     adcgs_error *error)
+adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *e, const adcgs_frame *frame, const float *alpha, adcgs_error *error)
 {
     if (frame->width != e->target.width || frame->height != e->target.height)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels, expected %dx%d", e->target.path,
-                          frame->width, frame->height, e->target.width, e->target.height);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels, expected %dx%d", e->target.path, frame->width,
+                          frame->height, e->target.width, e->target.height);
     const int code = av_frame_make_writable(e->frame); /* the encoder may still hold the previous frame */
     if (code < 0)
         return fail(e, code, "encode", error);

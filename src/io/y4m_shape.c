@@ -77,7 +77,7 @@ adcgs_status adcgs_y4m_shape_parse(adcgs_y4m_shape *out, const char *line, const
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: its first line has no width and height from 1 to %d", path,
                           ADCGS_IMAGE_MAX);
     out->frame_bytes = frame_bytes(space, (size_t)out->width, (size_t)out->height);
-    return out->frame_bytes ? ADCGS_OK
-                            : adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: Y4M in the colour space %.31s is not supported", path,
-                                         space);
+    return out->frame_bytes
+               ? ADCGS_OK
+               : adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: Y4M in the colour space %.31s is not supported", path, space);
 }

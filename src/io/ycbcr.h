@@ -8,8 +8,10 @@ typedef struct adcgs_ycbcr {
     float red, blue;
 } adcgs_ycbcr;
 
+/* clang-format off */
 #define ADCGS_YCBCR_709 {0.2126f, 0.0722f}
 #define ADCGS_YCBCR_601 {0.299f, 0.114f}
+/* clang-format on */
 
 static inline void adcgs_ycbcr_from_rgb(adcgs_ycbcr w, const float rgb[3], float *y, float *cb, float *cr)
 {

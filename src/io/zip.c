@@ -11,10 +11,10 @@
 
 #include <zlib.h>
 
-#define LOCAL 30   /* bytes of a file's header */
-#define CENTRAL 46 /* bytes of its entry in the directory */
-#define END 22     /* bytes of the record after the directory */
-#define NEEDED 20  /* version that a reader must support */
+#define LOCAL 30       /* bytes of a file's header */
+#define CENTRAL 46     /* bytes of its entry in the directory */
+#define END 22         /* bytes of the record after the directory */
+#define NEEDED 20      /* version that a reader must support */
 #define FIRST_DAY 0x21 /* 1 January 1980 */
 
 static void put(adcgs_zip *zip, const void *data, size_t bytes)

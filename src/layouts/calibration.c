@@ -26,8 +26,10 @@ adcgs_status adcgs_calibrate(adcgs_scene_view *view, const adcgs_lens *lens, int
     const double x = (double)width / lens->width, y = (double)height / lens->height;
     if (fabs(width - y * lens->width) > fmax(SHAPE_TOLERANCE * width, 1.0) &&
         fabs(height - x * lens->height) > fmax(SHAPE_TOLERANCE * height, 1.0))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, another aspect ratio than the %dx%d of its camera: check if "
-                          "it is cropped or rotated", path, width, height, lens->width, lens->height);
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "%s: %dx%d pixels, another aspect ratio than the %dx%d of its camera: check if "
+                          "it is cropped or rotated",
+                          path, width, height, lens->width, lens->height);
     view->lens = *lens;
     adcgs_lens_resize(&view->lens, width, height);
     return adcgs_lens_pinhole(&view->lens, &view->camera, path, error);

@@ -14,8 +14,10 @@ adcgs_status adcgs_capture_refuse(json_t *root, const char *path, adcgs_error *e
 {
     if (!json_is_array(json_object_get(root, "poses")) || !json_is_array(json_object_get(root, "K")))
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: metadata of a Record3D capture, which is not supported: convert it "
-                      "to a folder with transforms.json by nerfstudio's ns-process-data record3d", path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED,
+                      "%s: metadata of a Record3D capture, which is not supported: convert it "
+                      "to a folder with transforms.json by nerfstudio's ns-process-data record3d",
+                      path);
 }
 
 #define TO_TRANSFORMS(how) "convert it to a folder with transforms.json by nerfstudio's ns-process-data " how

@@ -26,9 +26,9 @@ typedef struct reader {
     adcgs_error *error;
     const adcgs_frame_range *frames;
     adcgs_colmap_models models;
-    adcgs_colmap_place place;     /**< of the model in use, one of models */
+    adcgs_colmap_place place; /**< of the model in use, one of models */
     adcgs_colmap model;
-    char *pictures;              /**< folder of the images, with its slash */
+    char *pictures;               /**< folder of the images, with its slash */
     adcgs_scene_view *calibrated; /**< one for each camera; height 0: not yet calibrated */
 } reader;
 
@@ -329,8 +329,10 @@ adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *fram
     r.place = r.models.place;
     if (status == ADCGS_OK)
         status = r.place.folder ? read_model(&r, with_points)
-                          : adcgs_fail(error, ADCGS_ERR_DATA, "%s: no COLMAP model: no cameras.bin or cameras.txt in sparse/0, "
-                                       "sparse or here", scene->directory);
+                                : adcgs_fail(error, ADCGS_ERR_DATA,
+                                             "%s: no COLMAP model: no cameras.bin or cameras.txt in sparse/0, "
+                                             "sparse or here",
+                                             scene->directory);
     clear(&r);
     return status;
 }

@@ -7,11 +7,11 @@
 
 #include "layouts/colmap_model.h"
 
-#define CAMERA_BYTES 24      /* id, kind, width, height; then its parameters */
-#define IMAGE_BYTES 64       /* id, rotation, translation, camera; then its name */
-#define FEATURE_BYTES 24     /* of an image: x, y, point */
-#define POINT_BYTES 51       /* id, position, colour, error, length of the track */
-#define TRACK_BYTES 8        /* image, feature */
+#define CAMERA_BYTES 24  /* id, kind, width, height; then its parameters */
+#define IMAGE_BYTES 64   /* id, rotation, translation, camera; then its name */
+#define FEATURE_BYTES 24 /* of an image: x, y, point */
+#define POINT_BYTES 51   /* id, position, colour, error, length of the track */
+#define TRACK_BYTES 8    /* image, feature */
 
 typedef struct cursor {
     const uint8_t *at, *end;

@@ -21,7 +21,7 @@ static const struct {
     const char *parent;   /**< of numbered folders, each with a model */
 } groups[] = {
     {{"sparse/0/", "sparse/", ""}, "sparse/"},
-    {{"colmap/sparse/0/", "colmap/sparse/", "colmap/"}, "colmap/sparse/"},  /* nerfstudio */
+    {{"colmap/sparse/0/", "colmap/sparse/", "colmap/"}, "colmap/sparse/"},     /* nerfstudio */
     {{"distorted/sparse/0/", "distorted/sparse/", NULL}, "distorted/sparse/"}, /* before images are undistorted */
 };
 

@@ -24,12 +24,12 @@ typedef struct adcgs_colmap {
     adcgs_colmap_image *images;   /**< in the order of the file, then sorted by name */
     size_t n_cameras, n_images;
     adcgs_points points;
-    uint64_t tracked, seen;       /**< points with a track, and images in all tracks together */
-    double deviation;             /**< sum of the mean reprojection errors of these points, in pixels */
-    uint32_t *training;           /**< ids of the training images, ascending; NULL: unknown */
+    uint64_t tracked, seen; /**< points with a track, and images in all tracks together */
+    double deviation;       /**< sum of the mean reprojection errors of these points, in pixels */
+    uint32_t *training;     /**< ids of the training images, ascending; NULL: unknown */
     size_t n_training;
     /* Position of the reader, for messages. */
-    const char *path, *unit;      /**< unit: "line", or the kind of element ("camera") */
+    const char *path, *unit; /**< unit: "line", or the kind of element ("camera") */
     uint64_t index;
     adcgs_error *error;
 } adcgs_colmap;

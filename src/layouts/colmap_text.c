@@ -178,7 +178,8 @@ static adcgs_status skip_points(adcgs_colmap *model, cursor *c)
     skip_blanks(c);
     c->is_held = is_image(c->at);
     return c->is_held ? ADCGS_OK
-                      : adcgs_colmap_bad(model, ADCGS_ERR_DATA, "neither the points of the image before, X, Y, POINT3D_ID for "
+                      : adcgs_colmap_bad(model, ADCGS_ERR_DATA,
+                                         "neither the points of the image before, X, Y, POINT3D_ID for "
                                          "each, nor the next image");
 }
 

@@ -12,9 +12,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define VIEWS_MAX 1000000  /* limit of a scene's views; a view takes some hundred bytes */
+#define VIEWS_MAX 1000000 /* limit of a scene's views; a view takes some hundred bytes */
 #define FIRST_CAPACITY 64
-#define GAP_MAX 1000       /* numbers that are tried after the last image of a sequence without a count */
+#define GAP_MAX 1000 /* numbers that are tried after the last image of a sequence without a count */
 
 static adcgs_status no_memory(const char *path, adcgs_error *error)
 {
@@ -148,8 +148,10 @@ static adcgs_status check_gap(const char *folder, const char *pattern, int64_t m
         if (!found)
             continue;
         char *gap = adcgs_footage_number(folder, pattern, missing);
-        adcgs_fail(error, ADCGS_ERR_DATA, "%s: no such image, but number %lld exists: if the sequence ends before, give its "
-                   "count", gap ? gap : pattern, (long long)number);
+        adcgs_fail(error, ADCGS_ERR_DATA,
+                   "%s: no such image, but number %lld exists: if the sequence ends before, give its "
+                   "count",
+                   gap ? gap : pattern, (long long)number);
         free(gap);
         return ADCGS_ERR_DATA;
     }

@@ -6,11 +6,11 @@
 #include "data/scene.h"
 
 typedef struct adcgs_footage {
-    char *video;       /**< NULL: images */
-    char **pictures;   /**< one per frame; NULL: a missing image, for live footage */
+    char *video;     /**< NULL: images */
+    char **pictures; /**< one per frame; NULL: a missing image, for live footage */
     int64_t frames;
     int width, height; /**< of the video, or of the first image */
-    adcgs_fps rate;   /**< of the video; unknown for images */
+    adcgs_fps rate;    /**< of the video; unknown for images */
 } adcgs_footage;
 
 /** Counts the frames of a video. Errors as from adcgs_video_open(). */

@@ -17,22 +17,22 @@
 #define IDS_MAX 1000000
 #define ID_BYTES_MAX 200
 #define WARP_MAX 1e9
-#define WORLD_MAX 1e9          /* largest coordinate, in files and after conversion */
-#define BEND_MAX 1e6           /* largest skew in pixels and distortion coefficient */
-#define DIVIDE_MAX 64          /* largest N of rgb/Nx */
-#define RULE_PERIOD 4          /* without val_ids, one of this many ids is for training ... */
-#define RULE_TEST 2            /* ... and the one at this offset for testing */
+#define WORLD_MAX 1e9 /* largest coordinate, in files and after conversion */
+#define BEND_MAX 1e6  /* largest skew in pixels and distortion coefficient */
+#define DIVIDE_MAX 64 /* largest N of rgb/Nx */
+#define RULE_PERIOD 4 /* without val_ids, one of this many ids is for training ... */
+#define RULE_TEST 2   /* ... and the one at this offset for testing */
 
 typedef struct reader {
     adcgs_scene *scene;
     adcgs_error *error;
     json_t *dataset, *metadata;
     char *dataset_path, *metadata_path;
-    char *images;              /**< folder of the images */
-    int divide;                /**< cameras are for images larger by this factor */
+    char *images; /**< folder of the images */
+    int divide;   /**< cameras are for images larger by this factor */
     double centre[3], scale;
-    double last;               /**< largest warp_id */
-    json_t *taken;             /**< keys: ids that have a view */
+    double last;   /**< largest warp_id */
+    json_t *taken; /**< keys: ids that have a view */
 } reader;
 
 int adcgs_is_hypernerf(const char *folder)
@@ -202,8 +202,8 @@ static adcgs_status find_last(reader *r)
 static adcgs_status find_file(const reader *r, char *folder, const char *id, char **out)
 {
     char *stem = folder ? adcgs_path("%s%s", folder, id) : NULL;
-    adcgs_status status = stem ? adcgs_find_image(out, stem, r->error)
-                               : adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->images);
+    adcgs_status status =
+        stem ? adcgs_find_image(out, stem, r->error) : adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->images);
     if (status == ADCGS_OK && !*out)
         status = adcgs_find_image_like(out, folder, id, r->error);
     free(stem);
@@ -340,8 +340,10 @@ static adcgs_status move_point(const reader *r, const char *path, uint32_t index
     for (int a = 0; a < 3; a++) {
         const double x = (position[a] - r->centre[a]) * r->scale;
         if (!(fabs(x) <= WORLD_MAX))
-            return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: point %u: %c is %g with the scene's center and scale, at most %g "
-                              "is expected", path, index, "xyz"[a], x, WORLD_MAX);
+            return adcgs_fail(r->error, ADCGS_ERR_DATA,
+                              "%s: point %u: %c is %g with the scene's center and scale, at most %g "
+                              "is expected",
+                              path, index, "xyz"[a], x, WORLD_MAX);
         position[a] = x;
     }
     return ADCGS_OK;

@@ -24,10 +24,10 @@ void adcgs_stem(char *out, size_t size, const char *path);
 
 /** Names that are added one after another. All zero: none yet. */
 typedef struct adcgs_counting {
-    char before[64];       /**< common prefix of the names */
-    long long last, step;  /**< last number and step between numbers */
+    char before[64];      /**< common prefix of the names */
+    long long last, step; /**< last number and step between numbers */
     uint32_t n;
-    int is_other;          /**< a name is no prefix with a number, or not the next */
+    int is_other; /**< a name is no prefix with a number, or not the next */
 } adcgs_counting;
 
 void adcgs_counting_add(adcgs_counting *counting, const char *stem);

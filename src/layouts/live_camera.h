@@ -17,44 +17,44 @@
 
 typedef struct adcgs_live_camera {
     const adcgs_source_camera *source;
-    adcgs_fps rate;       /**< unknown before a video's first line has arrived, unless the scene file gives it */
-    double offset;        /**< time of frame 0 in seconds, from the beginning of the scene */
-    int width, height;    /**< of its images; 0: none has arrived yet */
-    int64_t next;         /**< the first undecided frame */
-    int64_t first;        /**< earlier frames are skipped */
-    uint8_t *there;       /**< [next - base] availability of frames; frames before base are forgotten */
+    adcgs_fps rate;    /**< unknown before a video's first line has arrived, unless the scene file gives it */
+    double offset;     /**< time of frame 0 in seconds, from the beginning of the scene */
+    int width, height; /**< of its images; 0: none has arrived yet */
+    int64_t next;      /**< the first undecided frame */
+    int64_t first;     /**< earlier frames are skipped */
+    uint8_t *there;    /**< [next - base] availability of frames; frames before base are forgotten */
     int64_t base, capacity;
     int64_t n_missing, first_missing; /**< number so far, and the first of them */
-    int is_over;          /**< no more footage will arrive */
+    int is_over;                      /**< no more footage will arrive */
 
     /* Images. */
-    int64_t refused;      /**< a frame whose file could not be read in its state at the time; -1: none */
+    int64_t refused; /**< a frame whose file could not be read in its state at the time; -1: none */
     off_t refused_bytes;
     struct timespec refused_time;
 
     /* Y4M. */
-    int fd;               /**< -1: not open */
-    int is_pipe;          /**< nonzero for standard input of any kind */
-    int has_begun;        /**< bytes have arrived */
-    int waits;            /**< it waits for bytes */
+    int fd;        /**< -1: not open */
+    int is_pipe;   /**< nonzero for standard input of any kind */
+    int has_begun; /**< bytes have arrived */
+    int waits;     /**< it waits for bytes */
     adcgs_y4m_shape shape;
     char line[ADCGS_Y4M_LINE_MAX + 1]; /**< the first line */
     char text[ADCGS_Y4M_LINE_MAX + 1]; /**< the current line */
     size_t text_bytes;
-    size_t left;          /**< bytes of the current frame that have not arrived yet */
-    uint8_t *held;        /**< bytes read but not yet used */
+    size_t left;   /**< bytes of the current frame that have not arrived yet */
+    uint8_t *held; /**< bytes read but not yet used */
     size_t held_begin, held_end;
-    FILE *spool;          /**< for the current stretch */
+    FILE *spool; /**< for the current stretch */
     uint32_t stretch;
 } adcgs_live_camera;
 
 /** Limits for a camera that looks for footage. */
 typedef struct adcgs_live_limits {
-    double until;         /**< in seconds; frames taken later are not read yet */
-    double given_up;      /**< images taken earlier are not waited for */
-    int is_end;           /**< no more footage will arrive */
-    const char *folder;   /**< for footage from pipes */
-    uint32_t index;       /**< of the camera, for names of files */
+    double until;                                 /**< in seconds; frames taken later are not read yet */
+    double given_up;                              /**< images taken earlier are not waited for */
+    int is_end;                                   /**< no more footage will arrive */
+    const char *folder;                           /**< for footage from pipes */
+    uint32_t index;                               /**< of the camera, for names of files */
     uint32_t (*stretch)(void *user, double time); /**< the stretch of a frame; called once rates are known */
     void *user;
 } adcgs_live_limits;

@@ -22,9 +22,9 @@ struct adcgs_live {
     adcgs_live_watch watch;
     const char *points_path;
     double origin[3], scale; /* of the stream to continue, else 0 */
-    char *path;            /* of the scene file */
-    adcgs_scene *whole;    /* opened with the first segment */
-    uint8_t *told;         /* [n] nonzero for cameras whose missing images were reported */
+    char *path;              /* of the scene file */
+    adcgs_scene *whole;      /* opened with the first segment */
+    uint8_t *told;           /* [n] nonzero for cameras whose missing images were reported */
 };
 
 /* ---- Segments ---- */
@@ -42,7 +42,9 @@ static adcgs_status gather(adcgs_live *l, uint32_t camera, uint32_t stretch, adc
     const adcgs_live_limits limits = adcgs_live_limits_of(&l->watch, camera);
     int64_t span[2], n = 0;
     adcgs_live_frames(&l->watch, c, stretch, span);
-    *out = (adcgs_footage){.width = c->width, .height = c->height, .rate = c->rate,
+    *out = (adcgs_footage){.width = c->width,
+                           .height = c->height,
+                           .rate = c->rate,
                            .frames = ADCGS_MAX(ADCGS_MIN(span[1], c->next) - span[0], 0)};
     for (int64_t i = 0; i < out->frames; i++)
         n += adcgs_live_camera_has(c, span[0] + i);
@@ -161,10 +163,11 @@ static adcgs_status take_next(adcgs_live *l, adcgs_live_segment *s, adcgs_error 
     for (;;) {
         ADCGS_TRY(adcgs_live_await(&l->watch, error));
         if (l->watch.taken == l->watch.n_complete)
-            return l->whole || l->watch.goes_on
-                       ? ADCGS_OK
-                       : adcgs_fail(error, ADCGS_ERR_DATA, "%s: the footage ended with a single frame time, expected two or "
-                                    "more", l->path);
+            return l->whole || l->watch.goes_on ? ADCGS_OK
+                                                : adcgs_fail(error, ADCGS_ERR_DATA,
+                                                             "%s: the footage ended with a single frame time, expected two or "
+                                                             "more",
+                                                             l->path);
         forget(l, l->watch.taken);
         ADCGS_TRY(make_segment(l, l->watch.taken++, s, error));
         if (s->scene->n_times > 1)
@@ -219,9 +222,8 @@ static adcgs_status find_paths(adcgs_live *l, const char *path, adcgs_error *err
     const char *const slash = l->path ? strrchr(l->path, '/') : NULL;
     l->watch.end_path = l->path ? adcgs_path("%.*s" END_NAME, slash ? (int)(slash - l->path + 1) : 0, l->path) : NULL;
     l->watch.folder = adcgs_path("%s/adcgs-live-XXXXXX", chosen && *chosen ? chosen : "/var/tmp");
-    return l->path && l->watch.end_path && l->watch.folder
-               ? ADCGS_OK
-               : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    return l->path && l->watch.end_path && l->watch.folder ? ADCGS_OK
+                                                           : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
 }
 
 static int has_videos(const adcgs_live *l)

@@ -20,9 +20,9 @@
 typedef struct adcgs_live adcgs_live;
 
 typedef struct adcgs_live_options {
-    double seconds;  /**< minimum length of a segment */
-    int unbounded;   /**< pipes are read without a limit; else writers wait once the next segments are available */
-    const char *points_path; /**< initial points instead of the scene's, or NULL */
+    double seconds;           /**< minimum length of a segment */
+    int unbounded;            /**< pipes are read without a limit; else writers wait once the next segments are available */
+    const char *points_path;  /**< initial points instead of the scene's, or NULL */
     int (*interrupted)(void); /**< returns nonzero to stop at the footage found so far; called now and then */
     /**
      * Of a stream to continue: begin and end of its last segment in seconds, and its frame of reference; scale 0: none. Earlier
@@ -41,9 +41,9 @@ void adcgs_live_close(adcgs_live **live);
 
 /** A stretch of time and its footage. Zero-initialise before use. */
 typedef struct adcgs_live_segment {
-    adcgs_scene *scene;   /**< training views, with times from the segment's begin; part of adcgs_live_whole(). NULL: the end */
-    double begin, end;    /**< seconds from the scene's beginning */
-    double came;          /**< adcgs_seconds() when its last frame arrived */
+    adcgs_scene *scene; /**< training views, with times from the segment's begin; part of adcgs_live_whole(). NULL: the end */
+    double begin, end;  /**< seconds from the scene's beginning */
+    double came;        /**< adcgs_seconds() when its last frame arrived */
 } adcgs_live_segment;
 
 /**

@@ -101,8 +101,10 @@ static adcgs_status pass_over(adcgs_live_watch *l, adcgs_error *error)
         int64_t span[2];
         adcgs_live_frames(l, c, first, span);
         if (c->is_pipe)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a pipe cannot repeat footage: continue a stream from image or "
-                              "video files", c->source->video);
+            return adcgs_fail(error, ADCGS_ERR_USAGE,
+                              "%s: a pipe cannot repeat footage: continue a stream from image or "
+                              "video files",
+                              c->source->video);
         adcgs_live_camera_pass_over(c, c->source->video ? adcgs_live_first_of_file(l, c, first ? first - 1 : 0) : span[0]);
     }
     return ADCGS_OK;

@@ -14,28 +14,28 @@ typedef struct adcgs_live_watch {
     double seconds;
     int unbounded;
     int (*interrupted)(void);
-    int goes_on;           /**< continues a stream whose last segment has this span */
+    int goes_on; /**< continues a stream whose last segment has this span */
     double span[2];
-    char *end_path;        /**< path of the file that ends the footage */
-    char *folder;          /**< for footage from pipes; "" without pipes */
+    char *end_path; /**< path of the file that ends the footage */
+    char *folder;   /**< for footage from pipes; "" without pipes */
     uint32_t n;
     adcgs_source_camera *sources; /**< [n] */
     adcgs_live_camera *cameras;   /**< [n], their frames are protected by the lock */
 
-    atomic_int wanted;     /**< number of threads that wait for the lock */
+    atomic_int wanted; /**< number of threads that wait for the lock */
     pthread_t thread;
     int has_thread;
-    struct pollfd *pipes;  /**< [n], used by the thread only */
-    pthread_mutex_t lock;  /**< protects the members below */
+    struct pollfd *pipes; /**< [n], used by the thread only */
+    pthread_mutex_t lock; /**< protects the members below */
     pthread_cond_t changed;
-    uint32_t taken;        /**< stretches that were given or skipped */
-    uint32_t n_complete;   /**< complete stretches */
-    uint32_t n_passed;     /**< complete stretches that the stream to continue already has */
-    double *came;          /**< [n_complete - n_passed] when the others were completed, by adcgs_seconds() */
-    double last;           /**< time in seconds of the last available frame; -INFINITY: none */
-    int is_placed;         /**< the position for continuing is known */
-    int is_over, stop;     /**< no more footage will arrive; the thread is to end */
-    adcgs_error error;     /**< the thread's error */
+    uint32_t taken;      /**< stretches that were given or skipped */
+    uint32_t n_complete; /**< complete stretches */
+    uint32_t n_passed;   /**< complete stretches that the stream to continue already has */
+    double *came;        /**< [n_complete - n_passed] when the others were completed, by adcgs_seconds() */
+    double last;         /**< time in seconds of the last available frame; -INFINITY: none */
+    int is_placed;       /**< the position for continuing is known */
+    int is_over, stop;   /**< no more footage will arrive; the thread is to end */
+    adcgs_error error;   /**< the thread's error */
 } adcgs_live_watch;
 
 /** Starts the thread. ADCGS_ERR_MEMORY. Call adcgs_live_watch_stop() afterwards in any case; the caller owns the cameras. */

@@ -31,11 +31,11 @@ typedef struct reader {
     adcgs_scene *scene;
     adcgs_error *error;
     const adcgs_frame_range *frames;
-    char *path;             /**< of the poses */
+    char *path; /**< of the poses */
     uint8_t *data;
     adcgs_npy table;
-    adcgs_listing cameras;  /**< images of LLFF, videos or folders of Neu3D */
-    int fixed;              /**< it is Neu3D */
+    adcgs_listing cameras; /**< images of LLFF, videos or folders of Neu3D */
+    int fixed;             /**< it is Neu3D */
 } reader;
 
 static adcgs_status no_memory(const reader *r)

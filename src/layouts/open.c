@@ -34,14 +34,14 @@
 
 #define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1})
 #define NEAR_PER_DISTANCE 0.01
-#define DISTANCE_MIN 1e-9       /* well within a stream's range */
+#define DISTANCE_MIN 1e-9 /* well within a stream's range */
 #define DISTANCE_MAX 1e10
-#define FOLDERS_MOST 100        /* limit of subfolders that are searched for a scene */
-#define NEAR_PER_BOUND 0.5      /* bounds hold for most points, not for all */
-#define COLOUR_SRGB 1           /* a code of adcgs_stream */
+#define FOLDERS_MOST 100   /* limit of subfolders that are searched for a scene */
+#define NEAR_PER_BOUND 0.5 /* bounds hold for most points, not for all */
+#define COLOUR_SRGB 1      /* a code of adcgs_stream */
 
-const char *const adcgs_dataset_names[ADCGS_DATASETS + 1] = {"auto", "transforms", "hypernerf", "llff", "colmap", "adcgs",
-                                                            "splats", "panoptic", NULL};
+const char *const adcgs_dataset_names[ADCGS_DATASETS + 1] = {"auto",  "transforms", "hypernerf", "llff", "colmap",
+                                                             "adcgs", "splats",     "panoptic",  NULL};
 
 /** Sets the duration in seconds, unless the layout gives it, and the number of distinct training times. */
 static adcgs_status find_duration(adcgs_scene *scene, const char *path, int64_t step, adcgs_error *error)
@@ -197,8 +197,8 @@ static int has_scene_file(const char *folder)
     adcgs_error unused;
     json_t *root = NULL;
     char *path = adcgs_path("%s/scene.json", folder);
-    const int is_ours = adcgs_is_there(path) && adcgs_json_load(&root, path, &unused) == ADCGS_OK &&
-                        json_object_get(root, "adcgs_scene") != NULL;
+    const int is_ours =
+        adcgs_is_there(path) && adcgs_json_load(&root, path, &unused) == ADCGS_OK && json_object_get(root, "adcgs_scene") != NULL;
     json_decref(root);
     free(path);
     return is_ours;
@@ -207,7 +207,7 @@ static int has_scene_file(const char *folder)
 /** Detects the folder's layout by its files; ADCGS_DATASET_AUTO: no known layout. */
 static adcgs_dataset find_dataset(const char *folder)
 {
-    return is_transforms(folder)         ? ADCGS_DATASET_TRANSFORMS
+    return is_transforms(folder)        ? ADCGS_DATASET_TRANSFORMS
            : adcgs_is_panoptic(folder)  ? ADCGS_DATASET_PANOPTIC
            : adcgs_is_hypernerf(folder) ? ADCGS_DATASET_HYPERNERF
            : adcgs_is_llff(folder)      ? ADCGS_DATASET_LLFF
@@ -269,9 +269,10 @@ static adcgs_status refuse_sequence(const char *folder, adcgs_error *error)
     const int is_cloud = listing.n == 1 && !strcmp(listing.names[0], "points3d.ply"); /* of a scene without its cameras */
     char *const path = listing.n && !is_cloud ? adcgs_path("%s/%s", folder, listing.names[0]) : NULL;
     if (path && adcgs_kind_at(path)->class == ADCGS_KIND_SPLATS)
-        status = adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: a folder of %zu files of splats (%.60s): %s", folder, listing.n,
-                            listing.names[0], listing.n > 1 ? "sequences of splats are not supported, give one of the files"
-                                                            : "give the file itself");
+        status =
+            adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: a folder of %zu files of splats (%.60s): %s", folder, listing.n,
+                       listing.names[0],
+                       listing.n > 1 ? "sequences of splats are not supported, give one of the files" : "give the file itself");
     free(path);
     adcgs_listing_free(&listing);
     return status;

@@ -38,13 +38,13 @@ extern const char *const adcgs_dataset_names[ADCGS_DATASETS + 1];
 
 /** Overrides given on a command line. Zero-initialise. */
 typedef struct adcgs_scene_options {
-    const char *points_path;  /**< file of initial points, in world units, instead of the scene's own */
+    const char *points_path; /**< file of initial points, in world units, instead of the scene's own */
     int has_background;
     float background[3];
-    adcgs_fps rate;           /**< of the selected frames; unknown: the scene's, else 30 */
-    int dataset;              /**< an adcgs_dataset */
+    adcgs_fps rate;             /**< of the selected frames; unknown: the scene's, else 30 */
+    int dataset;                /**< an adcgs_dataset */
     const adcgs_footage *taken; /**< for a scene file: footage for adcgs_scene_file_read(); or NULL */
-    int is_outline;           /**< read only images that determine a size; alpha and background are not determined */
+    int is_outline;             /**< read only images that determine a size; alpha and background are not determined */
     adcgs_frame_range frames; /**< selects frames of videos, or distinct times of all images; the first selected one is time 0 */
 } adcgs_scene_options;
 

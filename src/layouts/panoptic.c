@@ -25,12 +25,12 @@
 typedef struct reader {
     adcgs_scene *scene;
     adcgs_error *error;
-    adcgs_json_place at;   /**< of the file being read */
+    adcgs_json_place at; /**< of the file being read */
     adcgs_split split;
-    int32_t wide, high;    /**< image size that k is for */
-    int width, height;     /**< of the images, from the first one of the split */
-    size_t times;        /**< timestamps of the training views */
-    json_t *taken;         /**< keys: names of the training images */
+    int32_t wide, high; /**< image size that k is for */
+    int width, height;  /**< of the images, from the first one of the split */
+    size_t times;       /**< timestamps of the training views */
+    json_t *taken;      /**< keys: names of the training images */
 } reader;
 
 int adcgs_is_panoptic(const char *folder)
@@ -208,8 +208,8 @@ static adcgs_status read_root(reader *r)
     if (r->split == ADCGS_SPLIT_TRAIN)
         r->times = times;
     else if (times > r->times)
-        return adcgs_json_bad(&r->at, ADCGS_ERR_DATA, "fn", "%zu timestamps, expected at most the %zu of train_meta.json",
-                              times, r->times);
+        return adcgs_json_bad(&r->at, ADCGS_ERR_DATA, "fn", "%zu timestamps, expected at most the %zu of train_meta.json", times,
+                              r->times);
     return read_views(r, times);
 }
 

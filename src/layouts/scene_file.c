@@ -24,23 +24,51 @@ typedef struct reader {
     adcgs_error *error;
     const adcgs_frame_range *frames;
     const char *path;
-    char *folder;      /**< of the file, with its slash, or "" */
+    char *folder; /**< of the file, with its slash, or "" */
     json_t *root;
-    double scale;      /**< factor of positions */
-    adcgs_fps rate;   /**< of the whole file; unknown: not given */
-    const adcgs_footage *taken; /**< footage of the next training camera; NULL: use the footage named by the file */
-    int listing;      /**< cameras are listed without reading their footage */
+    double scale;                 /**< factor of positions */
+    adcgs_fps rate;               /**< of the whole file; unknown: not given */
+    const adcgs_footage *taken;   /**< footage of the next training camera; NULL: use the footage named by the file */
+    int listing;                  /**< cameras are listed without reading their footage */
     adcgs_source_camera *sources; /**< the training cameras, if listing */
     uint32_t n_sources;
 } reader;
 
-static const char *const root_fields[] = {"adcgs_scene", "name", "frame_rate", "scale", "unit", "up", "points", "points_scale",
-                                          "defaults", "cameras", NULL};
+static const char *const root_fields[] = {"adcgs_scene", "name",         "frame_rate", "scale",   "unit", "up",
+                                          "points",      "points_scale", "defaults",   "cameras", NULL};
 /* Fields of a camera; the first OWN_FIELDS cannot be shared. */
-static const char *const camera_fields[] = {
-    "name", "camera_to_world", "world_to_camera", "R", "t", "video", "axes", "pixel_centre", "width", "height", "fx", "fy", "cx",
-    "cy", "skew", "lens", "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "images", "masks", "first", "count", "frame_rate",
-    "time_offset", "split", NULL};
+static const char *const camera_fields[] = {"name",
+                                            "camera_to_world",
+                                            "world_to_camera",
+                                            "R",
+                                            "t",
+                                            "video",
+                                            "axes",
+                                            "pixel_centre",
+                                            "width",
+                                            "height",
+                                            "fx",
+                                            "fy",
+                                            "cx",
+                                            "cy",
+                                            "skew",
+                                            "lens",
+                                            "k1",
+                                            "k2",
+                                            "k3",
+                                            "k4",
+                                            "k5",
+                                            "k6",
+                                            "p1",
+                                            "p2",
+                                            "images",
+                                            "masks",
+                                            "first",
+                                            "count",
+                                            "frame_rate",
+                                            "time_offset",
+                                            "split",
+                                            NULL};
 #define OWN_FIELDS 6
 
 /** The path of a name in the file, from malloc(). */
@@ -96,8 +124,8 @@ static adcgs_status open_footage(const reader *r, const adcgs_json_place *at, ad
         return adcgs_footage_pattern(footage, folder_of_images(r, where.images), where.images, where.first, where.count,
                                      r->error);
     char *path = resolve(r, where.video);
-    const adcgs_status status = path ? adcgs_footage_video(footage, path, r->error)
-                                     : adcgs_json_bad(at, ADCGS_ERR_MEMORY, "video", "out of memory");
+    const adcgs_status status =
+        path ? adcgs_footage_video(footage, path, r->error) : adcgs_json_bad(at, ADCGS_ERR_MEMORY, "video", "out of memory");
     free(path);
     return status;
 }
@@ -196,7 +224,8 @@ static adcgs_status list_camera(reader *r, const adcgs_json_place *at)
         return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "masks", "one mask for each image is not supported for live footage");
     ADCGS_TRY(find_footage(at, &where));
     if (where.images && !adcgs_footage_is_row(where.images))
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "images", "expected the name of an image with one number, such as %%d or "
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "images",
+                              "expected the name of an image with one number, such as %%d or "
                               "%%05d");
     r->n_sources++;
     memcpy(c->name, camera.view.camera.name, sizeof c->name);
@@ -226,8 +255,8 @@ static adcgs_status take_camera(reader *r, const adcgs_json_place *at)
 
 static adcgs_status read_camera(reader *r, json_t *defaults, json_t *camera, size_t index, json_t *taken)
 {
-    const adcgs_json_place at = {
-        .path = r->path, .root = defaults, .frame = camera, .index = index, .list = "cameras", .error = r->error};
+    const adcgs_json_place at =
+        {.path = r->path, .root = defaults, .frame = camera, .index = index, .list = "cameras", .error = r->error};
     adcgs_footage footage = {0};
     if (!json_is_object(camera))
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: cameras[%zu]: expected an object", r->path, index);
@@ -344,8 +373,8 @@ static adcgs_status read_points(const reader *r, const adcgs_json_place *at)
     if (!name)
         return adcgs_points_alloc(points, 0, r->path, r->error);
     char *path = resolve(r, name);
-    const adcgs_status status = path ? adcgs_points_read(points, path, r->error)
-                                     : adcgs_json_bad(at, ADCGS_ERR_MEMORY, "points", "out of memory");
+    const adcgs_status status =
+        path ? adcgs_points_read(points, path, r->error) : adcgs_json_bad(at, ADCGS_ERR_MEMORY, "points", "out of memory");
     free(path);
     ADCGS_TRY(status);
     for (uint32_t i = 0; i < points->n; i++)
@@ -385,8 +414,8 @@ static adcgs_status read_file(reader *r, int with_points)
     ADCGS_TRY(adcgs_json_load(&r->root, r->path, r->error));
     const char *slash = strrchr(r->path, '/');
     r->folder = adcgs_path("%.*s", slash ? (int)(slash - r->path + 1) : 0, r->path);
-    const adcgs_status status = r->folder ? read_root(r, with_points)
-                                          : adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->path);
+    const adcgs_status status =
+        r->folder ? read_root(r, with_points) : adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->path);
     free(r->folder);
     json_decref(r->root);
     return status;

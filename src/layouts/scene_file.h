@@ -25,12 +25,12 @@ adcgs_status adcgs_scene_file_read(adcgs_scene *scene, const char *path, const a
 /** A training camera, and the location of its future footage. */
 typedef struct adcgs_source_camera {
     char name[ADCGS_CAMERA_NAME_MAX + 1];
-    char *video;          /**< NULL: images; "standard input" if is_input */
-    int is_input;         /**< the file gives "-" */
+    char *video;           /**< NULL: images; "standard input" if is_input */
+    int is_input;          /**< the file gives "-" */
     char *folder, *images; /**< of images: see adcgs_footage_number() */
-    int64_t first, count; /**< of images: first number, and count; count 0: unknown */
-    adcgs_fps rate;       /**< of the camera, else of the file; unknown: the video's, or the default for images */
-    double offset;        /**< time of its first frame in seconds */
+    int64_t first, count;  /**< of images: first number, and count; count 0: unknown */
+    adcgs_fps rate;        /**< of the camera, else of the file; unknown: the video's, or the default for images */
+    double offset;         /**< time of its first frame in seconds */
 } adcgs_source_camera;
 
 /**

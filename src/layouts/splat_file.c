@@ -12,10 +12,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define OPACITY_MAX 0.99f       /* largest opacity of a primitive */
+#define OPACITY_MAX 0.99f             /* largest opacity of a primitive */
 #define OPACITY_LEAST (1.0f / 255.0f) /* fainter splats are not rendered */
 #define POINT_OPACITY 0.1f
-#define INSIDE 0.95             /* share of the splats within the radius */
+#define INSIDE 0.95                   /* share of the splats within the radius */
 #define HALF_FIELD 0.4363323129985824 /* 25 degrees, between the optical axis and the middle of an edge of the view */
 #define SHELLS 2
 #define GOLDEN_ANGLE 2.399963229728653
@@ -163,8 +163,8 @@ adcgs_status adcgs_splat_scene_read(adcgs_scene *scene, int want_points, const c
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     ADCGS_TRY(adcgs_splats_read(&s->splats, path, error));
     double *values = malloc(s->splats.n * sizeof *values);
-    const adcgs_status status = values ? find_region(s, values, path, error)
-                                       : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    const adcgs_status status =
+        values ? find_region(s, values, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     free(values);
     ADCGS_TRY(status);
     if (want_points)

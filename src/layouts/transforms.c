@@ -21,10 +21,10 @@
 
 typedef struct place {
     adcgs_json_place json;
-    const char *folder; /**< of the file, with its slash */
-    adcgs_split split;  /**< of the frame; ADCGS_SPLITS: none */
+    const char *folder;                                    /**< of the file, with its slash */
+    adcgs_split split;                                     /**< of the frame; ADCGS_SPLITS: none */
     int width[ADCGS_SPLITS + 1], height[ADCGS_SPLITS + 1]; /**< size of a split's first image */
-    int other_width, other_height; /**< size of an image that differs from it; 0: none does */
+    int other_width, other_height;                         /**< size of an image that differs from it; 0: none does */
 } place;
 
 /** Finds the image's file: by its name, or at another possible location. */
@@ -40,8 +40,10 @@ static adcgs_status find_image(const place *at, const adcgs_scene *scene, char *
                    ? ADCGS_OK
                    : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "file_path", "out of memory");
     if (!*out && adcgs_is_windows_path(name))
-        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.60s, a Windows path, nor an image of "
-                              "its name next to this file or in images", name);
+        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path",
+                              "no such image: %.60s, a Windows path, nor an image of "
+                              "its name next to this file or in images",
+                              name);
     return *out ? ADCGS_OK : adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.100s", name);
 }
 
@@ -91,9 +93,10 @@ static adcgs_status fit_size(const place *at, const adcgs_scene_view *view, adcg
     if (width == lens->width && height == lens->height)
         return ADCGS_OK;
     if (fabs(width - y * lens->width) > slack && fabs(height - x * lens->height) > slack)
-        return adcgs_fail(at->json.error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d, w and h of frames[%zu] in %s, "
-                          "or the same aspect ratio: check whether it was cropped or rotated", view->path, width, height,
-                          lens->width, lens->height, at->json.index, at->json.path);
+        return adcgs_fail(at->json.error, ADCGS_ERR_DATA,
+                          "%s: %dx%d pixels, expected %dx%d, w and h of frames[%zu] in %s, "
+                          "or the same aspect ratio: check whether it was cropped or rotated",
+                          view->path, width, height, lens->width, lens->height, at->json.index, at->json.path);
     adcgs_lens_resize(lens, width, height);
     return ADCGS_OK;
 }
@@ -110,9 +113,10 @@ static adcgs_status check_angle(const place *at, const adcgs_lens *lens)
     const double focal = 0.5 * lens->width / tan(0.5 * json_number_value(angle));
     if (fabs(focal - lens->fx) <= ANGLE_SLACK * lens->fx)
         return ADCGS_OK;
-    return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "fl_x", "%g, but camera_angle_x %g is %g at a width of %d pixels: "
-                          "nerfstudio uses the first, others the second; remove one", lens->fx, json_number_value(angle), focal,
-                          lens->width);
+    return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "fl_x",
+                          "%g, but camera_angle_x %g is %g at a width of %d pixels: "
+                          "nerfstudio uses the first, others the second; remove one",
+                          lens->fx, json_number_value(angle), focal, lens->width);
 }
 
 /** Reads the lens and derives its pinhole. */
@@ -200,8 +204,10 @@ static adcgs_status add_list(const place *at, json_t *table, int split)
         if (failed)
             return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, lists[split], "out of memory");
         if ((before | 1 << split) == (1 << ADCGS_SPLIT_TRAIN | 1 << ADCGS_SPLIT_TEST))
-            return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, lists[split], "%.80s is in train_filenames, too: a view for testing "
-                                  "must not be trained on", text);
+            return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, lists[split],
+                                  "%.80s is in train_filenames, too: a view for testing "
+                                  "must not be trained on",
+                                  text);
     }
     return ADCGS_OK;
 }
@@ -287,8 +293,8 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
 {
     json_t *frames, *table = NULL, *seen = json_object();
     size_t n;
-    adcgs_status status = seen ? adcgs_json_frames(&at->json, &frames, &n)
-                               : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "frames", "out of memory");
+    adcgs_status status =
+        seen ? adcgs_json_frames(&at->json, &frames, &n) : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "frames", "out of memory");
     if (status == ADCGS_OK && split == ADCGS_SPLITS)
         status = read_lists(at, &table);
     for (int s = 0; status == ADCGS_OK && s < ADCGS_SPLITS; s++)
@@ -319,9 +325,10 @@ static void remark_sizes(const place *at, adcgs_scene *scene)
     if (!at->other_width || json_object_get(at->json.root, "w") || !json_object_get(at->json.root, "fl_x"))
         return;
     const adcgs_split split = scene->n_views[ADCGS_SPLIT_TRAIN] ? ADCGS_SPLIT_TRAIN : at->split;
-    adcgs_scene_remark(scene, "images have several sizes, such as %dx%d and %dx%d, and fl_x is one for all: it is used "
-                       "unchanged; if some are reduced, give each frame w, h, fl_x, cx, cy", at->width[split],
-                       at->height[split], at->other_width, at->other_height);
+    adcgs_scene_remark(scene,
+                       "images have several sizes, such as %dx%d and %dx%d, and fl_x is one for all: it is used "
+                       "unchanged; if some are reduced, give each frame w, h, fl_x, cx, cy",
+                       at->width[split], at->height[split], at->other_width, at->other_height);
 }
 
 /** A missing file of points counts as none: training works without it. */
@@ -366,8 +373,8 @@ adcgs_status adcgs_transforms_read(adcgs_scene *scene, adcgs_transforms *out, co
         folder[slash ? slash - folder + 1 : 0] = 0;
     }
     place at = {.json = {.path = path, .root = root, .error = error}, .folder = folder};
-    const adcgs_status status = folder ? read_root(&at, scene, out, split)
-                                       : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    const adcgs_status status =
+        folder ? read_root(&at, scene, out, split) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     free(folder);
     json_decref(root);
     if (status != ADCGS_OK) {

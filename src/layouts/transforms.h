@@ -11,7 +11,7 @@
 
 /** Values of one file other than its views. */
 typedef struct adcgs_transforms {
-    adcgs_fps rate;   /**< unknown if not given */
+    adcgs_fps rate;    /**< unknown if not given */
     int has_times;     /**< frames carry times */
     int has_lists;     /**< the file lists names for each split */
     char clock[64];    /**< a field of frames that is not read but differs between them like a time, or "" */

@@ -118,8 +118,10 @@ static void remark_times(adcgs_scene *scene, const adcgs_transforms *facts, int 
     if (facts->has_times)
         return;
     if (*facts->clock)
-        adcgs_scene_remark(scene, "frames have %s, which is not supported, and no time: the scene is treated as static; if "
-                           "it moves, give each frame a time from 0 to 1", facts->clock);
+        adcgs_scene_remark(scene,
+                           "frames have %s, which is not supported, and no time: the scene is treated as static; if "
+                           "it moves, give each frame a time from 0 to 1",
+                           facts->clock);
     else
         scene->counts = is_single && names_count(sorted, n);
 }
@@ -147,8 +149,10 @@ static adcgs_status find_twice(adcgs_scene *scene, const listed *sorted, size_t 
         same = count_same(sorted + i, n - i, times);
         tested += times[ADCGS_SPLIT_TRAIN] && times[ADCGS_SPLIT_TEST];
         if (is_listed && tested)
-            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %.100s is listed for training and for testing: a view for testing must "
-                              "not be trained on; list it for one of them, or leave the list for testing out", path, name);
+            return adcgs_fail(error, ADCGS_ERR_DATA,
+                              "%s: %.100s is listed for training and for testing: a view for testing must "
+                              "not be trained on; list it for one of them, or leave the list for testing out",
+                              path, name);
         if (times[ADCGS_SPLIT_TRAIN] > 1 && !twice++)
             first_twice = name;
         if (times[ADCGS_SPLIT_TRAIN] && times[ADCGS_SPLIT_TEST] && !twice++)
@@ -158,12 +162,15 @@ static adcgs_status find_twice(adcgs_scene *scene, const listed *sorted, size_t 
     }
     if (twice)
         adcgs_scene_remark(scene, "%zu frame%s for training come%s more than once, such as %.100s%s", twice, twice > 1 ? "s" : "",
-                           twice > 1 ? "" : "s", first_twice, tested ? ", also for testing: test figures do not "
-                                                                       "measure new views" : "");
+                           twice > 1 ? "" : "s", first_twice,
+                           tested ? ", also for testing: test figures do not "
+                                    "measure new views"
+                                  : "");
     if (validated)
-        adcgs_scene_remark(scene, "%zu frame%s for training, such as %.100s, %s listed for validation, too: validation "
-                           "figures do not measure new views", validated, validated > 1 ? "s" : "", first_validated,
-                           validated > 1 ? "are" : "is");
+        adcgs_scene_remark(scene,
+                           "%zu frame%s for training, such as %.100s, %s listed for validation, too: validation "
+                           "figures do not measure new views",
+                           validated, validated > 1 ? "s" : "", first_validated, validated > 1 ? "are" : "is");
     return ADCGS_OK;
 }
 

@@ -9,8 +9,8 @@
 
 #include <stdlib.h>
 
-#define DEPTH_MOST 4         /* nesting of folders that is searched; also bounds circular links */
-#define FOLDERS_MOST 1000    /* limit of subfolders of one folder */
+#define DEPTH_MOST 4      /* nesting of folders that is searched; also bounds circular links */
+#define FOLDERS_MOST 1000 /* limit of subfolders of one folder */
 
 /** Stems of the views' paths, sorted. */
 typedef struct stems {

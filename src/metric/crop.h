@@ -14,9 +14,9 @@ typedef struct adcgs_box {
 } adcgs_box;
 
 typedef struct adcgs_crop {
-    int visible;            /**< if 0, the members below are not set */
-    int rectangle[4];       /**< left, top, right, bottom in pixels; right and bottom are exclusive */
-    double psnr, ssim;      /**< of the cropped images */
+    int visible;       /**< if 0, the members below are not set */
+    int rectangle[4];  /**< left, top, right, bottom in pixels; right and bottom are exclusive */
+    double psnr, ssim; /**< of the cropped images */
 } adcgs_crop;
 
 /**

@@ -35,7 +35,7 @@ typedef struct session {
     const adcgs_scene *scene;
     const adcgs_scene_view *views;
     uint32_t n;
-    uint32_t *of, *order;     /**< [n] from adcgs_group_views() */
+    uint32_t *of, *order; /**< [n] from adcgs_group_views() */
     int measure;
     adcgs_temporal *temporal; /**< of the current camera; NULL for a camera with one view, and without a measure over time */
     adcgs_temporal_total total;
@@ -57,8 +57,8 @@ static adcgs_status look_ahead(session *s, uint32_t first, uint32_t end, adcgs_e
         adcgs_camera camera;
         float *truth;
         ADCGS_TRY(load_truth(s, &s->views[s->order[i]], &truth, &camera, error));
-        const adcgs_status status = i > first ? ADCGS_OK
-                                              : adcgs_temporal_create(&s->temporal, camera.width, camera.height, error);
+        const adcgs_status status =
+            i > first ? ADCGS_OK : adcgs_temporal_create(&s->temporal, camera.width, camera.height, error);
         if (status == ADCGS_OK)
             adcgs_temporal_look(s->temporal, truth);
         free(truth);
@@ -141,9 +141,14 @@ static adcgs_status score_view(session *s, uint32_t i, adcgs_view_score *score, 
     const size_t pixels = (size_t)camera.width * (size_t)camera.height;
     float *rgb = malloc(pixels * 3 * sizeof *rgb), *planar = malloc(pixels * 3 * sizeof *planar);
     uint8_t *levels = malloc(pixels * 3);
-    adcgs_frame frame = { camera.width, camera.height, rgb };
-    *score = (adcgs_view_score){.view = view, .camera = s->of[s->order[i]], .width = frame.width, .height = frame.height,
-                                .seen = &camera, .decoded = planar, .truth = truth};
+    adcgs_frame frame = {camera.width, camera.height, rgb};
+    *score = (adcgs_view_score){.view = view,
+                                .camera = s->of[s->order[i]],
+                                .width = frame.width,
+                                .height = frame.height,
+                                .seen = &camera,
+                                .decoded = planar,
+                                .truth = truth};
     adcgs_status status = ADCGS_ERR_MEMORY;
     if (rgb && planar && levels)
         status = render_planar(s->decoder, &camera, view->time, &frame, levels, planar, &score->seconds, error);
@@ -188,7 +193,12 @@ adcgs_status adcgs_evaluate(adcgs_evaluation *out, adcgs_decoder *decoder, const
                             int measure, adcgs_score_fn each, void *user, adcgs_error *error)
 {
     const uint32_t n = scene->n_views[split];
-    session s = {.decoder = decoder, .scene = scene, .views = scene->views[split], .n = n, .measure = measure, .each = each,
+    session s = {.decoder = decoder,
+                 .scene = scene,
+                 .views = scene->views[split],
+                 .n = n,
+                 .measure = measure,
+                 .each = each,
                  .user = user};
     memset(out, 0, sizeof *out);
     if (!n)

@@ -18,7 +18,7 @@ enum {
                                     cameras */
     ADCGS_MEASURE_STATIC = 4,  /**< variance over time of static regions */
     ADCGS_MEASURE_FLICKER = 8,
-    ADCGS_MEASURE_FITTED = 16, /**< PSNR after fitting gain and black level */
+    ADCGS_MEASURE_FITTED = 16,         /**< PSNR after fitting gain and black level */
     ADCGS_MEASURE_FITTED_DYNAMIC = 32, /**< the same of moving regions, fitted to the whole image */
     ADCGS_MEASURE_MOVING = ADCGS_MEASURE_DYNAMIC | ADCGS_MEASURE_FITTED_DYNAMIC,
     ADCGS_MEASURE_TIME = ADCGS_MEASURE_MOVING | ADCGS_MEASURE_STATIC | ADCGS_MEASURE_FLICKER,
@@ -28,18 +28,18 @@ enum {
 /** One view's result. Images are planar [3][height][width] and valid only during the call. */
 typedef struct adcgs_view_score {
     const adcgs_scene_view *view;
-    uint32_t camera;                        /**< from 0 in order of the views; equal pose and lens are one camera */
+    uint32_t camera; /**< from 0 in order of the views; equal pose and lens are one camera */
     double psnr, ssim;
     double fitted_psnr, fitted_dynamic_psnr; /**< NaN if not measured */
-    double ms_ssim;                         /**< NaN if not measured, as the members below */
-    int ms_ssim_scales;                     /**< 0 if not measured */
-    adcgs_temporal_view temporal;           /**< for cameras with several views; with a mask of moving pixels, dynamic_psnr is
+    double ms_ssim;                          /**< NaN if not measured, as the members below */
+    int ms_ssim_scales;                      /**< 0 if not measured */
+    adcgs_temporal_view temporal;            /**< for cameras with several views; with a mask of moving pixels, dynamic_psnr is
                                                  that of the mask */
-    double known_share;                     /**< share of pixels in the mask of moving pixels; NaN without a mask */
-    const adcgs_temporal_total *of_camera;  /**< with the last view of a camera with several views, else NULL */
-    double seconds;                         /**< to render the frame */
+    double known_share;                      /**< share of pixels in the mask of moving pixels; NaN without a mask */
+    const adcgs_temporal_total *of_camera;   /**< with the last view of a camera with several views, else NULL */
+    double seconds;                          /**< to render the frame */
     int width, height;
-    const adcgs_camera *seen;               /**< the view's camera, at this size; valid as long as the images */
+    const adcgs_camera *seen; /**< the view's camera, at this size; valid as long as the images */
     const float *decoded, *truth;
 } adcgs_view_score;
 

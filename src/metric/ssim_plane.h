@@ -22,9 +22,9 @@ typedef struct adcgs_ssim_sums {
 /** The window and scratch memory to blur rows, for images up to a width. Zero-initialise before use. */
 typedef struct adcgs_ssim_space {
     double window[ADCGS_SSIM_TAPS];
-    double *ring;   /**< [TAPS][MOMENTS][width] */
-    double *padded; /**< [MOMENTS][width + 2 RADIUS] */
-    double *row;    /**< [MOMENTS][width] */
+    double *ring;          /**< [TAPS][MOMENTS][width] */
+    double *padded;        /**< [MOMENTS][width + 2 RADIUS] */
+    double *row;           /**< [MOMENTS][width] */
     const uint8_t *hidden; /**< [height][width] pixels left out of the sums; NULL: none */
 } adcgs_ssim_space;
 

@@ -22,8 +22,8 @@
 #include "base/base.h"
 
 #define ADCGS_CHANGE_LEAST 0.1 /**< change above which a pixel counts, in the range 0..1 */
-#define ADCGS_CHANGE_NEAR 2 /**< neighbourhood of the majority, pixels */
-#define ADCGS_CHANGE_REACH 3 /**< dilation of the dynamic region, pixels */
+#define ADCGS_CHANGE_NEAR 2    /**< neighbourhood of the majority, pixels */
+#define ADCGS_CHANGE_REACH 3   /**< dilation of the dynamic region, pixels */
 
 typedef struct adcgs_temporal adcgs_temporal;
 

@@ -18,7 +18,7 @@ enum {
 };
 
 typedef enum adcgs_event_kind {
-    ADCGS_EVENT_NONE,   /**< an event without effect */
+    ADCGS_EVENT_NONE, /**< an event without effect */
     ADCGS_EVENT_QUIT,
     ADCGS_EVENT_KEY,    /**< key, down, again */
     ADCGS_EVENT_BUTTON, /**< button, down, x, y */

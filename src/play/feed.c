@@ -12,7 +12,7 @@
 #define BYTES_MAX ((uint64_t)1 << 32) /* the same limit as for a played file */
 
 struct adcgs_feed {
-    adcgs_incoming in;   /**< owned by the thread while it runs */
+    adcgs_incoming in; /**< owned by the thread while it runs */
     uint8_t piece[PIECE_BYTES];
     void (*wake)(void *arg);
     void *arg;

@@ -12,11 +12,11 @@
 
 /** Progress of decoding. */
 typedef struct adcgs_come {
-    adcgs_info info;    /**< of the decoded part */
-    uint64_t bytes;     /**< decoded bytes */
-    int drawable;       /**< something can be rendered */
-    int over;           /**< nothing more will arrive, or be decoded */
-    adcgs_error fault;  /**< the reason, unless its status is ADCGS_OK */
+    adcgs_info info;   /**< of the decoded part */
+    uint64_t bytes;    /**< decoded bytes */
+    int drawable;      /**< something can be rendered */
+    int over;          /**< nothing more will arrive, or be decoded */
+    adcgs_error fault; /**< the reason, unless its status is ADCGS_OK */
 } adcgs_come;
 
 typedef struct adcgs_intake {
@@ -25,7 +25,7 @@ typedef struct adcgs_intake {
     adcgs_decoder *decoder; /**< NULL until the first adcgs_intake_take() */
     int layers;             /**< with which the decoder was opened */
     adcgs_come come;
-    uint8_t piece[65536];   /**< n bytes of the feed, from come.bytes on, at position at */
+    uint8_t piece[65536]; /**< n bytes of the feed, from come.bytes on, at position at */
     size_t at, n;
 } adcgs_intake;
 

@@ -8,13 +8,13 @@
 
 /** Figures that are not in the state. */
 typedef struct adcgs_play_figures {
-    double seconds;     /**< render time of the last image */
-    double rate;        /**< images per second; 0: none recently */
-    int width, height;  /**< of the last image */
-    uint32_t splats;    /**< rendered splats */
-    int tiers;          /**< rendered tiers of the stream */
-    long dropped;       /**< frames skipped during playback */
-    char coming[160];   /**< received part of the stream; "": all of it has arrived */
+    double seconds;    /**< render time of the last image */
+    double rate;       /**< images per second; 0: none recently */
+    int width, height; /**< of the last image */
+    uint32_t splats;   /**< rendered splats */
+    int tiers;         /**< rendered tiers of the stream */
+    long dropped;      /**< frames skipped during playback */
+    char coming[160];  /**< received part of the stream; "": all of it has arrived */
 } adcgs_play_figures;
 
 /** Renders the panels, from the lowest to the uppermost; hidden ones have width 0. Free them with adcgs_panel_free(). */

@@ -11,10 +11,10 @@
 
 #include <stdlib.h>
 
-#define HEIGHT_WANTED 480         /* of the first window; smaller cameras are enlarged by a whole number */
-#define SIDE_MAX 4096             /* of the first window, for any camera */
-#define REFRESH_SECONDS 0.25      /* interval at which figures and messages are rendered again */
-#define WAIT_MOVING 4             /* milliseconds to wait for events */
+#define HEIGHT_WANTED 480    /* of the first window; smaller cameras are enlarged by a whole number */
+#define SIDE_MAX 4096        /* of the first window, for any camera */
+#define REFRESH_SECONDS 0.25 /* interval at which figures and messages are rendered again */
+#define WAIT_MOVING 4        /* milliseconds to wait for events */
 #define WAIT_STILL 100
 
 static void measure_window(adcgs_player *p)
@@ -68,9 +68,9 @@ static void set_key_frame(adcgs_player *p)
     if (!state->key_frame)
         return;
     adcgs_orbit_control_view(&state->control, state->width, state->height, &camera);
-    const adcgs_status status =
-        state->key_frame > 0 ? adcgs_key_frames_add(&p->keys, &camera, time, s->source.path, &s->info, &error)
-                             : adcgs_key_frames_take_back(&p->keys, &s->info, &error);
+    const adcgs_status status = state->key_frame > 0
+                                    ? adcgs_key_frames_add(&p->keys, &camera, time, s->source.path, &s->info, &error)
+                                    : adcgs_key_frames_take_back(&p->keys, &s->info, &error);
     if (status != ADCGS_OK)
         adcgs_play_say(state, "%s", error.text);
     else if (p->keys.n)

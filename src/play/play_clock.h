@@ -9,13 +9,13 @@
 #define ADCGS_PLAY_SPEED_MAX 3 /**< exponent: 8 times as fast; with a minus 1/8 */
 
 typedef struct adcgs_play_clock {
-    double begin;    /**< time of the first frame, seconds */
-    double rate;     /**< frames per second */
-    int frames;      /**< at least 1 */
-    double position; /**< seconds since begin, in [0, frames / rate) */
-    double seen;     /**< wall clock at the last tick */
+    double begin;     /**< time of the first frame, seconds */
+    double rate;      /**< frames per second */
+    int frames;       /**< at least 1 */
+    double position;  /**< seconds since begin, in [0, frames / rate) */
+    double seen;      /**< wall clock at the last tick */
     double available; /**< seconds since begin that are available; playback waits there. Infinity: the whole stream */
-    int speed;       /**< power of two */
+    int speed;        /**< power of two */
     int playing, loop;
 } adcgs_play_clock;
 

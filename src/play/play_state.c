@@ -11,11 +11,11 @@
 
 #define RADIANS_PER_HEIGHT 3.0 /* rotation by a drag over the window's height */
 #define SPEED_STEP 1.25
-#define SPEED_MIN 0.01         /* scene units per second */
+#define SPEED_MIN 0.01 /* scene units per second */
 #define SPEED_MAX 100.0
-#define SHIFT_SPEED 4.0        /* factor of the speed with shift */
-#define STILL_AFTER 0.2        /* seconds without a movement after which the image counts as still */
-#define LARGE_WIDTH 512        /* size from which on letters are twice as large */
+#define SHIFT_SPEED 4.0 /* factor of the speed with shift */
+#define STILL_AFTER 0.2 /* seconds without a movement after which the image counts as still */
+#define LARGE_WIDTH 512 /* size from which on letters are twice as large */
 #define LARGE_HEIGHT 480
 
 void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *stored)
@@ -76,7 +76,10 @@ static void move_by_hand(adcgs_play_state *state)
 }
 
 /* Keys that fly while they are held, with the direction in the camera's axes. */
-static const struct { char key; signed char right, down, forward; } flights[] = {
+static const struct {
+    char key;
+    signed char right, down, forward;
+} flights[] = {
     {'w', 0, 0, 1}, {'s', 0, 0, -1}, {'a', -1, 0, 0}, {'d', 1, 0, 0}, {'q', 0, 1, 0}, {'e', 0, -1, 0},
 };
 

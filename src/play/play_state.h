@@ -15,18 +15,9 @@
 #define ADCGS_PLAY_BAR_HEIGHT 14
 #define ADCGS_PLAY_BAR_COLUMNS 13
 
-typedef enum adcgs_play_drag {
-    ADCGS_DRAG_NONE,
-    ADCGS_DRAG_ORBIT,
-    ADCGS_DRAG_PAN,
-    ADCGS_DRAG_BAR
-} adcgs_play_drag;
+typedef enum adcgs_play_drag { ADCGS_DRAG_NONE, ADCGS_DRAG_ORBIT, ADCGS_DRAG_PAN, ADCGS_DRAG_BAR } adcgs_play_drag;
 
-typedef enum adcgs_play_shot {
-    ADCGS_SOURCE_IMAGE_NONE,
-    ADCGS_SOURCE_IMAGE_PNG,
-    ADCGS_SOURCE_IMAGE_EXR
-} adcgs_play_shot;
+typedef enum adcgs_play_shot { ADCGS_SOURCE_IMAGE_NONE, ADCGS_SOURCE_IMAGE_PNG, ADCGS_SOURCE_IMAGE_EXR } adcgs_play_shot;
 
 typedef struct adcgs_rect {
     int x, y, width, height;
@@ -35,32 +26,32 @@ typedef struct adcgs_rect {
 typedef struct adcgs_play_state {
     adcgs_orbit_control control;
     adcgs_play_clock clock;
-    adcgs_camera home;            /**< the view of reset */
-    const adcgs_camera *stored;   /**< the stream's cameras, [cameras] */
+    adcgs_camera home;          /**< the view of reset */
+    const adcgs_camera *stored; /**< the stream's cameras, [cameras] */
     int cameras;
-    int jumped;                   /**< the last selected stored camera; -1: none, or moved since */
-    int layers, layers_max;       /**< of the stream: used, and present; 1..5 */
-    int width, height;            /**< of the window, pixels */
-    double density;               /**< pixels per unit of the desktop */
+    int jumped;             /**< the last selected stored camera; -1: none, or moved since */
+    int layers, layers_max; /**< of the stream: used, and present; 1..5 */
+    int width, height;      /**< of the window, pixels */
+    double density;         /**< pixels per unit of the desktop */
 
-    int flying;                   /**< keys and mouse move the camera freely */
-    double speed;                 /**< of flying: scene units per second */
-    unsigned held;                /**< flight keys that are held, a bit for each */
+    int flying;    /**< keys and mouse move the camera freely */
+    double speed;  /**< of flying: scene units per second */
+    unsigned held; /**< flight keys that are held, a bit for each */
     int shift;
     adcgs_play_drag drag;
-    double moved;                 /**< when the user last moved the camera or the time */
+    double moved; /**< when the user last moved the camera or the time */
 
-    int bar, statistics, help;    /**< visible overlays */
+    int bar, statistics, help; /**< visible overlays */
     char message[200];
-    double message_end;           /**< when the message disappears */
+    double message_end; /**< when the message disappears */
 
-    adcgs_play_shot shot;         /**< requested screenshot; reset when it is taken */
-    int key_frame;                /**< request: 1 to add a key frame, -1 to remove the last; reset when it is done */
-    int record;                   /**< a video is recorded */
-    long recorded;                /**< its frames so far */
-    int full;                     /**< full screen is requested */
+    adcgs_play_shot shot; /**< requested screenshot; reset when it is taken */
+    int key_frame;        /**< request: 1 to add a key frame, -1 to remove the last; reset when it is done */
+    int record;           /**< a video is recorded */
+    long recorded;        /**< its frames so far */
+    int full;             /**< full screen is requested */
     int quit;
-    double now;                   /**< wall clock at the last tick */
+    double now; /**< wall clock at the last tick */
 } adcgs_play_state;
 
 /** Starts at the home camera, paused at the first frame. stored must live as long as the state. */

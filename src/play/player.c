@@ -94,8 +94,11 @@ static int records(const adcgs_player *p)
 static adcgs_play_job wanted_job(const adcgs_player *p, int divider)
 {
     const adcgs_play_state *const state = &p->state;
-    adcgs_play_job job = {.time = adcgs_play_clock_time(&state->clock), .layers = state->layers, .divider = divider,
-                          .number = adcgs_play_clock_frame(&state->clock), .seeks = p->seeks};
+    adcgs_play_job job = {.time = adcgs_play_clock_time(&state->clock),
+                          .layers = state->layers,
+                          .divider = divider,
+                          .number = adcgs_play_clock_frame(&state->clock),
+                          .seeks = p->seeks};
     const int films = records(p), width = films ? p->recording.width : state->width;
     adcgs_orbit_control_view(&state->control, width, films ? p->recording.height : state->height, &job.camera);
     job.tiers = adcgs_play_moving(state) && !shoots(p) && !films ? p->scale.tiers : p->scale.all;
@@ -223,8 +226,7 @@ static adcgs_status take_picture(adcgs_player *p, const adcgs_play_result *resul
     p->failure = ADCGS_OK;
     count_picture(p, result);
     count_dropped(p, &result->job);
-    if (adcgs_play_moving(&p->state) && result->job.divider == p->scale.divider &&
-        result->job.tiers == p->scale.tiers)
+    if (adcgs_play_moving(&p->state) && result->job.divider == p->scale.divider && result->job.tiers == p->scale.tiers)
         adcgs_play_scale_took(&p->scale, result->seconds, budget(p));
     p->stale = 1;
     return p->sdl->picture(p->window, result->rgb, camera->width, camera->height, error);

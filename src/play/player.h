@@ -14,11 +14,11 @@
 /** The position in a script. */
 typedef struct adcgs_script_run {
     adcgs_script script;
-    int at;            /**< the next or current line */
-    int begun;         /**< the current line has begun */
-    double since;      /**< when it began */
-    long pictures;     /**< images shown at that time */
-    int failed;        /**< an expectation did not hold */
+    int at;        /**< the next or current line */
+    int begun;     /**< the current line has begun */
+    double since;  /**< when it began */
+    long pictures; /**< images shown at that time */
+    int failed;    /**< an expectation did not hold */
 } adcgs_script_run;
 
 typedef struct adcgs_player {
@@ -31,24 +31,24 @@ typedef struct adcgs_player {
     adcgs_play_scale scale;
     adcgs_panel panels[ADCGS_PANELS];
     adcgs_script_run run;
-    adcgs_play_job job;      /**< the last one for the window; camera width 0 before the first */
-    int least_divider;       /**< larger images cannot be rendered */
-    int drawing;             /**< the worker has a job */
-    int captured;            /**< the window holds the mouse */
-    int full;                /**< the window is full screen */
-    adcgs_key_frames keys;   /**< set by the user */
+    adcgs_play_job job;    /**< the last one for the window; camera width 0 before the first */
+    int least_divider;     /**< larger images cannot be rendered */
+    int drawing;           /**< the worker has a job */
+    int captured;          /**< the window holds the mouse */
+    int full;              /**< the window is full screen */
+    adcgs_key_frames keys; /**< set by the user */
     adcgs_recording recording;
-    int last_frame;          /**< the last frame shown while playing; -1: none */
-    int seeks, last_seeks;   /**< number of events that changed the frame: now, and when that frame was posted */
-    int stale;               /**< the window's contents are not up to date */
-    double shown;            /**< when the window was last rendered */
-    double arrived;          /**< when the last image arrived */
-    double period;           /**< mean seconds between the last images; 0: unknown */
-    long pictures;           /**< shown so far */
-    adcgs_come come;         /**< decoded part of the stream */
-    adcgs_status failure;    /**< of the last image for the window, if no resolution can be rendered */
+    int last_frame;        /**< the last frame shown while playing; -1: none */
+    int seeks, last_seeks; /**< number of events that changed the frame: now, and when that frame was posted */
+    int stale;             /**< the window's contents are not up to date */
+    double shown;          /**< when the window was last rendered */
+    double arrived;        /**< when the last image arrived */
+    double period;         /**< mean seconds between the last images; 0: unknown */
+    long pictures;         /**< shown so far */
+    adcgs_come come;       /**< decoded part of the stream */
+    adcgs_status failure;  /**< of the last image for the window, if no resolution can be rendered */
     adcgs_error failure_error;
-    char shot[PATH_MAX];     /**< file of the requested or current screenshot; "": none */
+    char shot[PATH_MAX];      /**< file of the requested or current screenshot; "": none */
     adcgs_status shot_status; /**< of the last screenshot */
     adcgs_error shot_error;
 } adcgs_player;

@@ -20,7 +20,10 @@ int adcgs_recording_due(const adcgs_recording *r)
 
 static adcgs_status open_sink(adcgs_recording *r, adcgs_error *error)
 {
-    const adcgs_sink_config config = {.target = r->path, .frame_rate = 1.0 / r->step, .width = r->width, .height = r->height,
+    const adcgs_sink_config config = {.target = r->path,
+                                      .frame_rate = 1.0 / r->step,
+                                      .width = r->width,
+                                      .height = r->height,
                                       .frames = MANY_FRAMES};
     return adcgs_sink_open(&r->sink, &config, error);
 }

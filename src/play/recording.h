@@ -11,15 +11,15 @@
 #include <limits.h>
 
 typedef struct adcgs_recording {
-    adcgs_sink *sink;     /**< NULL: no recording */
-    char path[PATH_MAX];  /**< of the last recording; the requested name if set before it begins */
-    int width, height;    /**< of its frames */
-    long frames;          /**< frames so far */
-    double step;          /**< seconds between frames */
-    double base;          /**< the player's clock at the first */
-    double due;           /**< wall clock at which the next frame may be rendered */
-    double behind;        /**< delay of the player's clock against the wall clock */
-    adcgs_status status;  /**< of the last recording */
+    adcgs_sink *sink;    /**< NULL: no recording */
+    char path[PATH_MAX]; /**< of the last recording; the requested name if set before it begins */
+    int width, height;   /**< of its frames */
+    long frames;         /**< frames so far */
+    double step;         /**< seconds between frames */
+    double base;         /**< the player's clock at the first */
+    double due;          /**< wall clock at which the next frame may be rendered */
+    double behind;       /**< delay of the player's clock against the wall clock */
+    adcgs_status status; /**< of the last recording */
     adcgs_error error;
 } adcgs_recording;
 

@@ -48,10 +48,13 @@ static const char *take_shift(const char *name, int *shift)
 
 static int read_key(adcgs_script_line *to, char **rest)
 {
-    static const struct { const char *name; int key; } names[] = {
-        {"space", ' '}, {"escape", ADCGS_KEY_ESCAPE}, {"left", ADCGS_KEY_LEFT}, {"right", ADCGS_KEY_RIGHT},
-        {"home", ADCGS_KEY_HOME}, {"end", ADCGS_KEY_END}, {"pageup", ADCGS_KEY_PAGE_UP}, {"pagedown", ADCGS_KEY_PAGE_DOWN},
-        {"f1", ADCGS_KEY_F1}, {"f11", ADCGS_KEY_F11}, {"shift", ADCGS_KEY_SHIFT},
+    static const struct {
+        const char *name;
+        int key;
+    } names[] = {
+        {"space", ' '},           {"escape", ADCGS_KEY_ESCAPE}, {"left", ADCGS_KEY_LEFT},      {"right", ADCGS_KEY_RIGHT},
+        {"home", ADCGS_KEY_HOME}, {"end", ADCGS_KEY_END},       {"pageup", ADCGS_KEY_PAGE_UP}, {"pagedown", ADCGS_KEY_PAGE_DOWN},
+        {"f1", ADCGS_KEY_F1},     {"f11", ADCGS_KEY_F11},       {"shift", ADCGS_KEY_SHIFT},
     };
     const char *name = take_shift(strtok_r(NULL, BLANKS, rest), &to->shift);
     if (!name)
@@ -66,9 +69,12 @@ static int read_key(adcgs_script_line *to, char **rest)
 
 static int read_wait(adcgs_script_line *to, char **rest)
 {
-    static const struct { const char *name; adcgs_script_kind kind; } units[] = {
-        {"frames", ADCGS_SCRIPT_WAIT_FRAMES}, {"seconds", ADCGS_SCRIPT_WAIT_SECONDS}, {"bytes", ADCGS_SCRIPT_WAIT_BYTES},
-        {"tiers", ADCGS_SCRIPT_WAIT_TIERS}, {"segments", ADCGS_SCRIPT_WAIT_SEGMENTS},
+    static const struct {
+        const char *name;
+        adcgs_script_kind kind;
+    } units[] = {
+        {"frames", ADCGS_SCRIPT_WAIT_FRAMES}, {"seconds", ADCGS_SCRIPT_WAIT_SECONDS},   {"bytes", ADCGS_SCRIPT_WAIT_BYTES},
+        {"tiers", ADCGS_SCRIPT_WAIT_TIERS},   {"segments", ADCGS_SCRIPT_WAIT_SEGMENTS},
     };
     const char *const amount = strtok_r(NULL, BLANKS, rest);
     to->kind = ADCGS_SCRIPT_WAIT_END;
@@ -159,11 +165,14 @@ static int read_arguments(adcgs_script_line *to, char **rest)
 /** \return nonzero if the line is a command of that form; otherwise the line may be filled in part */
 static int read_command(adcgs_script_line *to, char *line)
 {
-    static const struct { const char *name; adcgs_script_kind kind; } names[] = {
-        {"wait", ADCGS_SCRIPT_WAIT_FRAMES}, {"drag", ADCGS_SCRIPT_DRAG}, {"move", ADCGS_SCRIPT_MOVE},
-        {"wheel", ADCGS_SCRIPT_WHEEL}, {"key", ADCGS_SCRIPT_KEY}, {"hold", ADCGS_SCRIPT_HOLD},
-        {"release", ADCGS_SCRIPT_RELEASE}, {"size", ADCGS_SCRIPT_SIZE}, {"screenshot", ADCGS_SCRIPT_SCREENSHOT},
-        {"grab", ADCGS_SCRIPT_GRAB}, {"record", ADCGS_SCRIPT_RECORD}, {"expect", ADCGS_SCRIPT_EXPECT},
+    static const struct {
+        const char *name;
+        adcgs_script_kind kind;
+    } names[] = {
+        {"wait", ADCGS_SCRIPT_WAIT_FRAMES}, {"drag", ADCGS_SCRIPT_DRAG},     {"move", ADCGS_SCRIPT_MOVE},
+        {"wheel", ADCGS_SCRIPT_WHEEL},      {"key", ADCGS_SCRIPT_KEY},       {"hold", ADCGS_SCRIPT_HOLD},
+        {"release", ADCGS_SCRIPT_RELEASE},  {"size", ADCGS_SCRIPT_SIZE},     {"screenshot", ADCGS_SCRIPT_SCREENSHOT},
+        {"grab", ADCGS_SCRIPT_GRAB},        {"record", ADCGS_SCRIPT_RECORD}, {"expect", ADCGS_SCRIPT_EXPECT},
         {"quit", ADCGS_SCRIPT_QUIT},
     };
     char *rest = NULL;

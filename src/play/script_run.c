@@ -39,7 +39,9 @@ static void drag(adcgs_player *p, const adcgs_script_line *line)
         push_key(p, ADCGS_KEY_SHIFT, 1);
     p->sdl->push(p->window, &event);
     for (int i = 1; i <= DRAG_STEPS; i++)
-        p->sdl->push(p->window, &(adcgs_event){.kind = ADCGS_EVENT_MOTION, .x = n[0] + i * dx, .y = n[1] + i * dy,
+        p->sdl->push(p->window, &(adcgs_event){.kind = ADCGS_EVENT_MOTION,
+                                               .x = n[0] + i * dx,
+                                               .y = n[1] + i * dy,
                                                .dx = floor(i * dx) - floor((i - 1) * dx),
                                                .dy = floor(i * dy) - floor((i - 1) * dy)});
     event.down = 0;
@@ -96,14 +98,32 @@ static outcome wait_size(adcgs_player *p, const adcgs_script_line *line, adcgs_e
 static int find_value(const adcgs_player *p, const char *name, double *value)
 {
     const adcgs_play_state *const s = &p->state;
-    const struct { const char *name; double value; } values[] = {
-        {"time", adcgs_play_clock_time(&s->clock)}, {"frame", adcgs_play_clock_frame(&s->clock)},
-        {"speed", adcgs_play_clock_factor(&s->clock)}, {"playing", s->clock.playing}, {"loop", s->clock.loop},
-        {"layers", s->layers}, {"camera", s->jumped}, {"flying", s->flying}, {"help", s->help},
-        {"statistics", s->statistics}, {"bar", s->bar}, {"full", s->full}, {"keys", p->keys.n},
-        {"recording", s->record}, {"recorded", (double)s->recorded}, {"distance", adcgs_orbit_control_distance(&s->control)},
-        {"splats", p->figures.splats}, {"divider", p->job.divider}, {"tiers", p->job.tiers},
-        {"bytes", (double)p->come.bytes}, {"segments", p->come.info.segments}, {"ended", p->come.over},
+    const struct {
+        const char *name;
+        double value;
+    } values[] = {
+        {"time", adcgs_play_clock_time(&s->clock)},
+        {"frame", adcgs_play_clock_frame(&s->clock)},
+        {"speed", adcgs_play_clock_factor(&s->clock)},
+        {"playing", s->clock.playing},
+        {"loop", s->clock.loop},
+        {"layers", s->layers},
+        {"camera", s->jumped},
+        {"flying", s->flying},
+        {"help", s->help},
+        {"statistics", s->statistics},
+        {"bar", s->bar},
+        {"full", s->full},
+        {"keys", p->keys.n},
+        {"recording", s->record},
+        {"recorded", (double)s->recorded},
+        {"distance", adcgs_orbit_control_distance(&s->control)},
+        {"splats", p->figures.splats},
+        {"divider", p->job.divider},
+        {"tiers", p->job.tiers},
+        {"bytes", (double)p->come.bytes},
+        {"segments", p->come.info.segments},
+        {"ended", p->come.over},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)
         if (!strcmp(values[i].name, name)) {
@@ -213,8 +233,7 @@ static adcgs_status go_on(adcgs_player *p, const adcgs_script_line *line, outcom
         return ADCGS_OK;
     case ADCGS_SCRIPT_SCREENSHOT:
         *how = *p->shot ? AGAIN : DONE;
-        return *p->shot || p->shot_status == ADCGS_OK ? ADCGS_OK
-                                                      : wrong(p, line, p->shot_status, p->shot_error.text, error);
+        return *p->shot || p->shot_status == ADCGS_OK ? ADCGS_OK : wrong(p, line, p->shot_status, p->shot_error.text, error);
     case ADCGS_SCRIPT_RECORD:
         *how = p->recording.sink ? DONE : AGAIN;
         return p->state.record ? ADCGS_OK : wrong(p, line, p->recording.status, p->recording.error.text, error);

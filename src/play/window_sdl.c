@@ -21,10 +21,22 @@ struct adcgs_window {
 };
 
 /* Keys with another number in SDL; ASCII keys have the same. */
-static const struct { int key; SDL_Keycode code; } keys[] = {
-    {ADCGS_KEY_LEFT, SDLK_LEFT}, {ADCGS_KEY_RIGHT, SDLK_RIGHT}, {ADCGS_KEY_HOME, SDLK_HOME}, {ADCGS_KEY_END, SDLK_END},
-    {ADCGS_KEY_PAGE_UP, SDLK_PAGEUP}, {ADCGS_KEY_PAGE_DOWN, SDLK_PAGEDOWN}, {ADCGS_KEY_F1, SDLK_F1}, {ADCGS_KEY_F11, SDLK_F11},
-    {ADCGS_KEY_SHIFT, SDLK_LSHIFT}, {ADCGS_KEY_SHIFT, SDLK_RSHIFT}, {'+', SDLK_KP_PLUS}, {'-', SDLK_KP_MINUS},
+static const struct {
+    int key;
+    SDL_Keycode code;
+} keys[] = {
+    {ADCGS_KEY_LEFT, SDLK_LEFT},
+    {ADCGS_KEY_RIGHT, SDLK_RIGHT},
+    {ADCGS_KEY_HOME, SDLK_HOME},
+    {ADCGS_KEY_END, SDLK_END},
+    {ADCGS_KEY_PAGE_UP, SDLK_PAGEUP},
+    {ADCGS_KEY_PAGE_DOWN, SDLK_PAGEDOWN},
+    {ADCGS_KEY_F1, SDLK_F1},
+    {ADCGS_KEY_F11, SDLK_F11},
+    {ADCGS_KEY_SHIFT, SDLK_LSHIFT},
+    {ADCGS_KEY_SHIFT, SDLK_RSHIFT},
+    {'+', SDLK_KP_PLUS},
+    {'-', SDLK_KP_MINUS},
 };
 
 static int key_of(SDL_Keycode code)
@@ -175,12 +187,18 @@ static void translate_mouse(const SDL_Event *from, double density, adcgs_event *
     switch (from->type) {
     case SDL_MOUSEBUTTONDOWN:
     case SDL_MOUSEBUTTONUP:
-        *out = (adcgs_event){.kind = ADCGS_EVENT_BUTTON, .down = from->type == SDL_MOUSEBUTTONDOWN,
-                             .button = from->button.button, .x = density * from->button.x, .y = density * from->button.y};
+        *out = (adcgs_event){.kind = ADCGS_EVENT_BUTTON,
+                             .down = from->type == SDL_MOUSEBUTTONDOWN,
+                             .button = from->button.button,
+                             .x = density * from->button.x,
+                             .y = density * from->button.y};
         break;
     case SDL_MOUSEMOTION:
-        *out = (adcgs_event){.kind = ADCGS_EVENT_MOTION, .x = density * from->motion.x, .y = density * from->motion.y,
-                             .dx = density * from->motion.xrel, .dy = density * from->motion.yrel};
+        *out = (adcgs_event){.kind = ADCGS_EVENT_MOTION,
+                             .x = density * from->motion.x,
+                             .y = density * from->motion.y,
+                             .dx = density * from->motion.xrel,
+                             .dy = density * from->motion.yrel};
         break;
     case SDL_MOUSEWHEEL:
         *out = (adcgs_event){.kind = ADCGS_EVENT_WHEEL,
@@ -208,7 +226,9 @@ static int window_event(adcgs_window *w, int milliseconds, adcgs_event *out)
         break;
     case SDL_KEYDOWN:
     case SDL_KEYUP:
-        *out = (adcgs_event){.kind = ADCGS_EVENT_KEY, .key = key_of(from.key.keysym.sym), .down = from.type == SDL_KEYDOWN,
+        *out = (adcgs_event){.kind = ADCGS_EVENT_KEY,
+                             .key = key_of(from.key.keysym.sym),
+                             .down = from.type == SDL_KEYDOWN,
                              .again = from.key.repeat};
         break;
     default:
@@ -228,10 +248,15 @@ static void window_push(adcgs_window *w, const adcgs_event *event)
         break;
     case ADCGS_EVENT_BUTTON:
         to.button = (SDL_MouseButtonEvent){.type = event->down ? SDL_MOUSEBUTTONDOWN : SDL_MOUSEBUTTONUP,
-                                           .button = (Uint8)event->button, .x = x, .y = y};
+                                           .button = (Uint8)event->button,
+                                           .x = x,
+                                           .y = y};
         break;
     case ADCGS_EVENT_MOTION:
-        to.motion = (SDL_MouseMotionEvent){.type = SDL_MOUSEMOTION, .x = x, .y = y, .xrel = (Sint32)(event->dx / density),
+        to.motion = (SDL_MouseMotionEvent){.type = SDL_MOUSEMOTION,
+                                           .x = x,
+                                           .y = y,
+                                           .xrel = (Sint32)(event->dx / density),
                                            .yrel = (Sint32)(event->dy / density)};
         break;
     case ADCGS_EVENT_WHEEL:

@@ -31,12 +31,12 @@ struct adcgs_worker {
     pthread_cond_t changed;
     stage stage;
 
-    adcgs_intake intake;  /**< of the feed, if there is one */
+    adcgs_intake intake;    /**< of the feed, if there is one */
     adcgs_decoder *decoder; /**< otherwise */
-    int layers;           /**< with which the decoder was opened */
+    int layers;             /**< with which the decoder was opened */
     float *values;
     uint8_t *rgb;
-    size_t room;          /**< samples in both */
+    size_t room; /**< samples in both */
     adcgs_play_result result;
 };
 

@@ -28,21 +28,21 @@ typedef struct adcgs_play_job {
 typedef struct adcgs_play_result {
     adcgs_play_job job;
     adcgs_status status;
-    adcgs_error error;    /**< the reason why there is no image */
-    double seconds;       /**< render time */
-    uint32_t splats;      /**< rendered splats */
-    const uint8_t *rgb;   /**< [height][width][3], of the camera's size; NULL without a failure: the image has not changed */
-    adcgs_come come;      /**< decoded part of an arriving stream */
+    adcgs_error error;  /**< the reason why there is no image */
+    double seconds;     /**< render time */
+    uint32_t splats;    /**< rendered splats */
+    const uint8_t *rgb; /**< [height][width][3], of the camera's size; NULL without a failure: the image has not changed */
+    adcgs_come come;    /**< decoded part of an arriving stream */
 } adcgs_play_result;
 
 typedef struct adcgs_worker adcgs_worker;
 
 /** The stream: its bytes, or their source. */
 typedef struct adcgs_play_source {
-    const char *path;     /**< its name for messages */
+    const char *path; /**< its name for messages */
     const uint8_t *data;
     size_t bytes;
-    adcgs_feed *feed;     /**< NULL: data is the whole stream */
+    adcgs_feed *feed; /**< NULL: data is the whole stream */
 } adcgs_play_source;
 
 /**

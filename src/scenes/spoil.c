@@ -18,9 +18,9 @@ static const struct {
     double most;
     int whole;
 } kinds[ADCGS_SPOILS] = {
-    {"exposure", 4.0, 0},    {"white", 4.0, 0}, {"step", 4.0, 0},    {"pose", 100.0, 0}, {"shake", 100.0, 0},
-    {"wrongpose", 180.0, 0}, {"axes", 3.0, 1},  {"sync", 100.0, 0},  {"drop", 0.95, 0},  {"twice", 1.0, 0},
-    {"before", 0.9, 0},      {"inside", 0.9, 0}, {"after", 0.9, 0}, {"tint", 4.0, 0},
+    {"exposure", 4.0, 0},    {"white", 4.0, 0},  {"step", 4.0, 0},   {"pose", 100.0, 0}, {"shake", 100.0, 0},
+    {"wrongpose", 180.0, 0}, {"axes", 3.0, 1},   {"sync", 100.0, 0}, {"drop", 0.95, 0},  {"twice", 1.0, 0},
+    {"before", 0.9, 0},      {"inside", 0.9, 0}, {"after", 0.9, 0},  {"tint", 4.0, 0},
 };
 
 /* Parses one fault. Returns the text after it, NULL if it is invalid. */
@@ -33,7 +33,8 @@ static const char *parse_one(adcgs_spoil *out, const char *text, adcgs_error *er
     if (kind == ADCGS_SPOILS) {
         (void)adcgs_fail(error, ADCGS_ERR_USAGE,
                          "spoil: unknown fault '%.*s', expected exposure, white, step, pose, shake, wrongpose, axes, sync, drop, "
-                         "twice, before, inside, after or tint", (int)ADCGS_MIN(length, (size_t)NAME_BYTES), text);
+                         "twice, before, inside, after or tint",
+                         (int)ADCGS_MIN(length, (size_t)NAME_BYTES), text);
         return NULL;
     }
     char *end = NULL;
@@ -153,10 +154,10 @@ void adcgs_spoil_pixels(const adcgs_spoil *spoil, const adcgs_spoil_picture *pic
     const double *const s = spoil->strength;
     double gain[3];
     for (int c = 0; c < 3; c++)
-        gain[c] = power_of_two(picture->stops +
-                               s[ADCGS_SPOIL_EXPOSURE] * (2.0 * draw(picture->camera, 0, ADCGS_SPOIL_EXPOSURE) - 1.0) +
-                               s[ADCGS_SPOIL_WHITE] * (2.0 * draw(picture->camera, c, ADCGS_SPOIL_WHITE) - 1.0) +
-                               (picture->time >= 0.5 ? 0.5 * (1 - c) * s[ADCGS_SPOIL_TINT] - s[ADCGS_SPOIL_STEP] : 0.0));
+        gain[c] =
+            power_of_two(picture->stops + s[ADCGS_SPOIL_EXPOSURE] * (2.0 * draw(picture->camera, 0, ADCGS_SPOIL_EXPOSURE) - 1.0) +
+                         s[ADCGS_SPOIL_WHITE] * (2.0 * draw(picture->camera, c, ADCGS_SPOIL_WHITE) - 1.0) +
+                         (picture->time >= 0.5 ? 0.5 * (1 - c) * s[ADCGS_SPOIL_TINT] - s[ADCGS_SPOIL_STEP] : 0.0));
     for (size_t i = 0; i < pixels; i++)
         for (int c = 0; c < 3; c++) {
             const double value = gain[c] * (double)rgb[3 * i + (size_t)c];

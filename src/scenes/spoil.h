@@ -10,20 +10,20 @@
 #include "base/thread_pool.h"
 
 typedef enum adcgs_spoil_kind {
-    ADCGS_SPOIL_EXPOSURE, /**< stops: each camera's gain is 2 to a random power between plus and minus this strength */
-    ADCGS_SPOIL_WHITE,    /**< stops: the same for each channel of each camera */
-    ADCGS_SPOIL_STEP,     /**< stops: images in the second half of the time are darker by this strength */
-    ADCGS_SPOIL_POSE,     /**< pixels: each camera is turned by a constant error of this deviation */
-    ADCGS_SPOIL_SHAKE,    /**< pixels: the camera of each image is turned by an error of its own */
+    ADCGS_SPOIL_EXPOSURE,  /**< stops: each camera's gain is 2 to a random power between plus and minus this strength */
+    ADCGS_SPOIL_WHITE,     /**< stops: the same for each channel of each camera */
+    ADCGS_SPOIL_STEP,      /**< stops: images in the second half of the time are darker by this strength */
+    ADCGS_SPOIL_POSE,      /**< pixels: each camera is turned by a constant error of this deviation */
+    ADCGS_SPOIL_SHAKE,     /**< pixels: the camera of each image is turned by an error of its own */
     ADCGS_SPOIL_WRONGPOSE, /**< degrees: only the camera in the middle is turned, about the vertical */
-    ADCGS_SPOIL_AXES,     /**< 1: y and z of all cameras are negated; 2: poses are world-to-camera; 3: x is mirrored */
-    ADCGS_SPOIL_SYNC,     /**< frame intervals: each camera is late or early by up to this strength */
-    ADCGS_SPOIL_DROP,     /**< share of images that are missing, at random */
-    ADCGS_SPOIL_TWICE,    /**< share of images that are replaced by the previous one (duplicate frames) */
-    ADCGS_SPOIL_BEFORE,   /**< share of the time without images, at the beginning */
-    ADCGS_SPOIL_INSIDE,   /**< share of the time without images, in the middle */
-    ADCGS_SPOIL_AFTER,    /**< share of the time without images, at the end */
-    ADCGS_SPOIL_TINT,     /**< stops: in the second half of the time, red is brighter and blue darker by half of this strength */
+    ADCGS_SPOIL_AXES,      /**< 1: y and z of all cameras are negated; 2: poses are world-to-camera; 3: x is mirrored */
+    ADCGS_SPOIL_SYNC,      /**< frame intervals: each camera is late or early by up to this strength */
+    ADCGS_SPOIL_DROP,      /**< share of images that are missing, at random */
+    ADCGS_SPOIL_TWICE,     /**< share of images that are replaced by the previous one (duplicate frames) */
+    ADCGS_SPOIL_BEFORE,    /**< share of the time without images, at the beginning */
+    ADCGS_SPOIL_INSIDE,    /**< share of the time without images, in the middle */
+    ADCGS_SPOIL_AFTER,     /**< share of the time without images, at the end */
+    ADCGS_SPOIL_TINT,      /**< stops: in the second half of the time, red is brighter and blue darker by half of this strength */
     ADCGS_SPOILS
 } adcgs_spoil_kind;
 

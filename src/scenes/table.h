@@ -34,20 +34,20 @@ typedef struct adcgs_scenes_entry {
     const char *name, *about;
     const adcgs_trace_object *objects;
     int n_objects;
-    uint32_t moving;         /**< bit i: object i moves; the others keep the pose of time 0 */
-    int size;                /**< width, and height if that is 0 */
-    int height;              /**< 0: as high as wide */
-    int cameras, times;      /**< times 1: a static scene, whose views have no time */
-    int turns; /**< each time is seen by every turns-th camera, a different set at each time; divides cameras */
-    double swings; /**< 0, or the number of swings of a single hand-held camera */
+    uint32_t moving;    /**< bit i: object i moves; the others keep the pose of time 0 */
+    int size;           /**< width, and height if that is 0 */
+    int height;         /**< 0: as high as wide */
+    int cameras, times; /**< times 1: a static scene, whose views have no time */
+    int turns;          /**< each time is seen by every turns-th camera, a different set at each time; divides cameras */
+    double swings;      /**< 0, or the number of swings of a single hand-held camera */
     int n_val, n_test;
-    double distance;         /**< of the cameras from the target */
+    double distance; /**< of the cameras from the target */
     double target[3];
     adcgs_scenes_path path;
     adcgs_scenes_ground ground;
-    int is_wide;             /**< focal length ADCGS_SCENES_WIDE */
-    int samples;             /**< rays per pixel along each axis; 0: 3 */
-    double stops;            /**< exposures of training cameras: evenly between plus and minus this many stops, mean 0 */
+    int is_wide;  /**< focal length ADCGS_SCENES_WIDE */
+    int samples;  /**< rays per pixel along each axis; 0: 3 */
+    double stops; /**< exposures of training cameras: evenly between plus and minus this many stops, mean 0 */
 } adcgs_scenes_entry;
 
 /** The scenes that imitate common captures, terminated by an entry without a name. */

@@ -15,12 +15,12 @@
 /* An object at one time. */
 typedef struct pose {
     double centre[3];
-    double axes[9]; /* rows are the local axes in the world */
+    double axes[9];    /* rows are the local axes in the world */
     double stretch[3]; /* along these axes */
     double slide[3];   /* displacement of its texture */
     double fade;
-    double bound2;  /* squared radius of a ball around it; negative: absent or invisible */
-    int shines;     /* nonzero: a lamp */
+    double bound2; /* squared radius of a ball around it; negative: absent or invisible */
+    int shines;    /* nonzero: a lamp */
 } pose;
 
 typedef struct job {
@@ -369,7 +369,13 @@ adcgs_status adcgs_trace_cover(const adcgs_trace_object *objects, int n, uint32_
                                double time, int width, int height, int samples, adcgs_pool *pool, float *cover,
                                adcgs_error *error)
 {
-    job j = {.objects = objects, .n = n, .width = width, .height = height, .samples = samples, .camera = camera, .which = which,
+    job j = {.objects = objects,
+             .n = n,
+             .width = width,
+             .height = height,
+             .samples = samples,
+             .camera = camera,
+             .which = which,
              .out = cover};
     return trace(&j, time, pool, cover_row, error);
 }

@@ -35,26 +35,26 @@ typedef struct adcgs_trace_object {
     adcgs_trace_shape shape;
     double size[3];
     double position[3];
-    double tilt;                 /**< turns about the local x axis, before everything else */
-    double turn;                 /**< turns about the z axis, after the tilt */
+    double tilt; /**< turns about the local x axis, before everything else */
+    double turn; /**< turns about the z axis, after the tilt */
     adcgs_trace_texture texture;
-    double frequency;            /**< texture cells per unit of length */
-    double colour[2][3];         /**< the two ends of the texture's mix */
-    double detail;               /**< strength of the fine noise on top, 0..1 */
+    double frequency;    /**< texture cells per unit of length */
+    double colour[2][3]; /**< the two ends of the texture's mix */
+    double detail;       /**< strength of the fine noise on top, 0..1 */
     uint32_t seed;
-    double velocity[3];          /**< units per unit of time */
+    double velocity[3]; /**< units per unit of time */
     double bounces, bounce_height;
-    double spin_axis[3], spin;   /**< unit axis, turns per unit of time */
+    double spin_axis[3], spin;    /**< unit axis, turns per unit of time */
     double orbit[2], orbit_turns; /**< circle about the point orbit (x, y) in turns per unit of time */
-    double stretch[3], beats;    /**< soft body: size along local axes times 1 + stretch sin(beats time), including its texture */
-    double zigzag[3], zigs;      /**< back and forth in straight lines, zigs times per unit of time, with sharp turns */
-    double slide[3];             /**< motion of its texture over the static surface, units per unit of time */
-    double clear;                /**< glass: share of the light that passes through each of its sides, without refraction */
-    double mirror;               /**< share of reflected light */
-    int glows;                   /**< fire: emits light, casts no shadow; has gaps where its texture's mix is small */
-    double fade[3];              /**< added smoothly to both colours until time 1 */
-    double from;                 /**< absent before this time */
-    double until;                /**< absent from this time on; 0: it stays */
+    double stretch[3], beats; /**< soft body: size along local axes times 1 + stretch sin(beats time), including its texture */
+    double zigzag[3], zigs;   /**< back and forth in straight lines, zigs times per unit of time, with sharp turns */
+    double slide[3];          /**< motion of its texture over the static surface, units per unit of time */
+    double clear;             /**< glass: share of the light that passes through each of its sides, without refraction */
+    double mirror;            /**< share of reflected light */
+    int glows;                /**< fire: emits light, casts no shadow; has gaps where its texture's mix is small */
+    double fade[3];           /**< added smoothly to both colours until time 1 */
+    double from;              /**< absent before this time */
+    double until;             /**< absent from this time on; 0: it stays */
 } adcgs_trace_object;
 
 /** A camera of the tracer: OpenGL axes (x right, y up, looking along -z), as in the written layout. */

@@ -9,22 +9,22 @@
 #include <math.h>
 
 /* Median error of correct poses on test scenes: 0.06 pixels, with few distant cameras 0.17. With pose errors of 1 pixel: 1. */
-#define FITS 0.4             /* pixels: median error of poses that fit the images */
-#define FITS_WELL 0.2        /* pixels: median error below which no other reading is tried */
+#define FITS 0.4      /* pixels: median error of poses that fit the images */
+#define FITS_WELL 0.2 /* pixels: median error below which no other reading is tried */
 enum {
     POINTS_LEAST = 100, /* minimum number of points for a test */
     POINTS_MOST = 4000, /* maximum number of points that are tested */
     VIEWS_MOST = 200    /* maximum number of views that are tested */
 };
-#define SEEN_WELL 0.2        /* share of the points that a camera sees on average, from which the given poses are accepted */
-#define SEEN_ENOUGH 0.05     /* share that confirms the given poses; low, since a camera in a room sees few points of it */
-#define SEEN_BETTER 3.0      /* minimum ratio of the share under another reading to the share as given */
-#define SEEN_MORE 0.3        /* minimum increase of that share */
-enum { FRAMES = 12 };        /* maximum number of frames whose images are compared */
-#define MOST_OF 0.9          /* share of the cameras that must face the common point */
-#define AROUND 0.9           /* length of the mean axis; above it, all cameras look in nearly one direction and share no target */
-#define CROSSED 0.2          /* mean distance of the axes from the common point, relative to the mean distance of the cameras */
-#define ONE_PLACE 0.02       /* spread of the camera centres, relative to the distance of the point that they would look at */
+#define SEEN_WELL 0.2    /* share of the points that a camera sees on average, from which the given poses are accepted */
+#define SEEN_ENOUGH 0.05 /* share that confirms the given poses; low, since a camera in a room sees few points of it */
+#define SEEN_BETTER 3.0  /* minimum ratio of the share under another reading to the share as given */
+#define SEEN_MORE 0.3    /* minimum increase of that share */
+enum { FRAMES = 12 };    /* maximum number of frames whose images are compared */
+#define MOST_OF 0.9      /* share of the cameras that must face the common point */
+#define AROUND 0.9       /* length of the mean axis; above it, all cameras look in nearly one direction and share no target */
+#define CROSSED 0.2      /* mean distance of the axes from the common point, relative to the mean distance of the cameras */
+#define ONE_PLACE 0.02   /* spread of the camera centres, relative to the distance of the point that they would look at */
 
 /* ---- Readings ---- */
 

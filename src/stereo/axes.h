@@ -24,7 +24,7 @@ typedef enum adcgs_axes_evidence { ADCGS_BY_POINTS, ADCGS_BY_IMAGES, ADCGS_BY_PL
 typedef struct adcgs_axes_check {
     adcgs_axes_reading meant; /**< ADCGS_READ_AS_GIVEN: no evidence against the poses; the other members are not set */
     adcgs_axes_evidence by;
-    double here, there;  /**< by points: mean share that a camera sees, under the poses as given and as meant */
+    double here, there; /**< by points: mean share that a camera sees, under the poses as given and as meant */
 } adcgs_axes_check;
 
 enum { ADCGS_STEREO_PAIRS = 3 }; /* minimum number of camera pairs for a result */

@@ -13,34 +13,34 @@
 #include <math.h>
 
 enum {
-    SEED_LEAST = 60,    /* points: minimum size of a seed and of a body */
-    TRIES = 12,         /* maximum number of seeds that are tracked */
-    VAIN = 8,           /* maximum number of rejected seeds in a row */
-    REFINEMENTS = 6,    /* rounds of refinement over all frames */
+    SEED_LEAST = 60, /* points: minimum size of a seed and of a body */
+    TRIES = 12,      /* maximum number of seeds that are tracked */
+    VAIN = 8,        /* maximum number of rejected seeds in a row */
+    REFINEMENTS = 6, /* rounds of refinement over all frames */
     AROUND = 64,
-    KNOWN_LEAST = 4     /* minimum number of frames in which a body is found */
+    KNOWN_LEAST = 4 /* minimum number of frames in which a body is found */
 };
-#define LINK 1.2            /* distance between connected points, in units of the layers' reach */
-#define EARLY 0.3           /* weight reduction of a seed at either end of the time range */
-#define KNOWN_SHARE 0.4     /* minimum share of all frames in which a body is found */
-#define SHARE_LEAST 0.4     /* minimum share of a body's points that match, averaged over frames */
-#define MOVES_LEAST 2.0     /* pixels: minimum motion of a body */
-#define LIGHT_BETTER 0.08   /* minimum gain of image agreement over the body held at one pose */
+#define LINK 1.2          /* distance between connected points, in units of the layers' reach */
+#define EARLY 0.3         /* weight reduction of a seed at either end of the time range */
+#define KNOWN_SHARE 0.4   /* minimum share of all frames in which a body is found */
+#define SHARE_LEAST 0.4   /* minimum share of a body's points that match, averaged over frames */
+#define MOVES_LEAST 2.0   /* pixels: minimum motion of a body */
+#define LIGHT_BETTER 0.08 /* minimum gain of image agreement over the body held at one pose */
 
-#define IN_PLACE 0.9        /* share of a shadow's points that lie on a static surface */
-#define TRAVELS 6.0         /* pixels: travel of the point that moves least, from which the whole body travels */
-#define TRAVELS_SHARE 0.5   /* the same, relative to the mean travel of the points; one of the two suffices */
-#define BESIDE 4.0          /* pixels: distance from a body within which no seed starts */
-#define LEAP_LEAST 1.5      /* pixels: tolerated deviation from constant motion, constant part */
-#define LEAP 0.9            /* part of it that grows with the body's step; the median over frames counts */
+#define IN_PLACE 0.9      /* share of a shadow's points that lie on a static surface */
+#define TRAVELS 6.0       /* pixels: travel of the point that moves least, from which the whole body travels */
+#define TRAVELS_SHARE 0.5 /* the same, relative to the mean travel of the points; one of the two suffices */
+#define BESIDE 4.0        /* pixels: distance from a body within which no seed starts */
+#define LEAP_LEAST 1.5    /* pixels: tolerated deviation from constant motion, constant part */
+#define LEAP 0.9          /* part of it that grows with the body's step; the median over frames counts */
 
 /** Working memory. */
 typedef struct work {
     adcgs_stereo *out;
     adcgs_pool *pool;
     adcgs_layers l;
-    uint8_t *tried;  /* [n_moving] 1: was part of a seed */
-    uint32_t *part;  /* [n_moving] */
+    uint8_t *tried; /* [n_moving] 1: was part of a seed */
+    uint32_t *part; /* [n_moving] */
     adcgs_track t;
 } work;
 
@@ -95,7 +95,7 @@ static int is_steady(const work *w)
 {
     double off[ADCGS_MATCHING_FRAMES_MAX];
     uint32_t n = 0;
-    int before[2] = { -1, -1 };
+    int before[2] = {-1, -1};
     for (int m = 0; m < w->l.n; m++) {
         adcgs_rigid on;
         if (!w->t.known[m])
@@ -159,8 +159,7 @@ static int beats_still(const work *w, int rest)
     double better = 0;
     int away = 0;
     for (int m = 0; m < w->l.n; m++) {
-        if (!t->known[m] ||
-            adcgs_track_between(t, &t->place[rest].at, &t->place[m].at) < MOVES_LEAST * t->model.pixel)
+        if (!t->known[m] || adcgs_track_between(t, &t->place[rest].at, &t->place[m].at) < MOVES_LEAST * t->model.pixel)
             continue;
         better += adcgs_direct_any_light(&t->model, &w->l.views[m], stride, &t->place[m].at) -
                   adcgs_direct_any_light(&t->model, &w->l.views[m], stride, &t->place[rest].at);
@@ -185,7 +184,9 @@ static verdict judge(const work *w)
     if (far < MOVES_LEAST * t->model.pixel)
         return IS_STILL;
     return known >= KNOWN_SHARE * w->l.n && beats_still(w, at[0]) && beats_still(w, at[known / 2]) &&
-           beats_still(w, at[known - 1]) && is_steady(w) && !is_shadow(w, at[0], far) ? IS_BODY : IS_NONE;
+                   beats_still(w, at[known - 1]) && is_steady(w) && !is_shadow(w, at[0], far)
+               ? IS_BODY
+               : IS_NONE;
 }
 
 /* ---- Result ---- */
@@ -224,7 +225,7 @@ static void claim(work *w, adcgs_stereo_body *b, uint8_t number)
 /** Expresses the motion relative to a pivot. */
 static void set_pose(adcgs_stereo_pose *p, const adcgs_rigid *at, const double pivot[3])
 {
-    double pose[12] = { 0 }, there[3];
+    double pose[12] = {0}, there[3];
     for (int a = 0; a < 9; a++)
         pose[4 * (a / 3) + a % 3] = at->r[a];
     adcgs_rotation_from_pose(pose, p->q);
@@ -268,8 +269,7 @@ static int find_rest(const work *w)
 {
     int best = -1;
     for (int m = 0; m < w->l.n; m++)
-        if (w->t.known[m] &&
-            (best < 0 || fabsf(w->l.rig->frame_time[m] - 0.5f) < fabsf(w->l.rig->frame_time[best] - 0.5f)))
+        if (w->t.known[m] && (best < 0 || fabsf(w->l.rig->frame_time[m] - 0.5f) < fabsf(w->l.rig->frame_time[best] - 0.5f)))
             best = m;
     return best;
 }
@@ -279,7 +279,7 @@ static adcgs_status write_body(work *w, adcgs_stereo_body *b, uint8_t number, ad
     double centre[3];
     adcgs_rigid back, at;
     const adcgs_rigid *rest = &w->t.place[find_rest(w)].at;
-    *b = (adcgs_stereo_body){ .pose = adcgs_alloc(NULL, (size_t)w->l.n, sizeof *b->pose, error) };
+    *b = (adcgs_stereo_body){.pose = adcgs_alloc(NULL, (size_t)w->l.n, sizeof *b->pose, error)};
     if (!b->pose)
         return adcgs_alloc_status(error);
     adcgs_track_centre(&w->t, centre);
@@ -315,7 +315,7 @@ static adcgs_status refine(work *w, int start, adcgs_error *error)
 /** Tracks and judges one seed. */
 static adcgs_status try_seed(work *w, int frame, uint32_t part, verdict *is, adcgs_error *error)
 {
-    w->t = (adcgs_track){ .model = { .n = 0 } };
+    w->t = (adcgs_track){.model = {.n = 0}};
     adcgs_status status = plant(w, frame, part, error);
     if (status == ADCGS_OK)
         status = adcgs_track_run(&w->t, &w->l, frame, w->pool, error);
@@ -356,7 +356,7 @@ static adcgs_status find_all(work *w, uint32_t most, adcgs_error *error)
 /** Sorts the bodies by size, the largest first. */
 static void sort_bodies(adcgs_stereo *out)
 {
-    uint8_t number[ADCGS_BODIES_MAX + 1] = { 0 }, order[ADCGS_BODIES_MAX];
+    uint8_t number[ADCGS_BODIES_MAX + 1] = {0}, order[ADCGS_BODIES_MAX];
     for (uint32_t i = 0; i < out->n_bodies; i++) {
         uint32_t k = i;
         const adcgs_stereo_body b = out->body[i];
@@ -381,7 +381,7 @@ adcgs_status adcgs_stereo_find_bodies(adcgs_stereo *out, adcgs_stereo_rig *rig, 
     work *w = adcgs_alloc(NULL, 1, sizeof *w, error);
     if (!w)
         return adcgs_alloc_status(error);
-    *w = (work){ .out = out, .pool = pool };
+    *w = (work){.out = out, .pool = pool};
     adcgs_status status = adcgs_stereo_rig_smooth(rig, error);
     if (status == ADCGS_OK)
         status = adcgs_layers_init(&w->l, out, rig, error);

@@ -25,19 +25,19 @@ static int64_t cell_along(const adcgs_cloud *c, double x)
 
 static uint32_t cell_of(const adcgs_cloud *c, const double x[3])
 {
-    return number_of(c, (const int64_t[]){ cell_along(c, x[0]), cell_along(c, x[1]), cell_along(c, x[2]) });
+    return number_of(c, (const int64_t[]){cell_along(c, x[0]), cell_along(c, x[1]), cell_along(c, x[2])});
 }
 
 static adcgs_cloud_place place_of(const adcgs_stereo_point *points, uint32_t i)
 {
     const double *x = points[i].x;
-    return (adcgs_cloud_place){ { x[0], x[1], x[2] }, i };
+    return (adcgs_cloud_place){{x[0], x[1], x[2]}, i};
 }
 
 adcgs_status adcgs_cloud_init(adcgs_cloud *c, const adcgs_stereo_point *points, uint32_t n, uint32_t stride, double edge,
                               adcgs_error *error)
 {
-    *c = (adcgs_cloud){ .p = points, .n = n, .used = (n + stride - 1) / stride, .edge = edge, .mask = 63 };
+    *c = (adcgs_cloud){.p = points, .n = n, .used = (n + stride - 1) / stride, .edge = edge, .mask = 63};
     while (c->mask < c->used)
         c->mask = 2 * c->mask + 1;
     c->first = adcgs_alloc(NULL, (size_t)c->mask + 2, sizeof *c->first, error);
@@ -60,7 +60,7 @@ void adcgs_cloud_clear(adcgs_cloud *c)
 {
     adcgs_free(NULL, c->first);
     adcgs_free(NULL, c->at);
-    *c = (adcgs_cloud){ .p = NULL };
+    *c = (adcgs_cloud){.p = NULL};
 }
 
 /** Iterator over the cells around a position. */
@@ -90,7 +90,7 @@ static int walk_on(walk *w)
 
 static double distance2(const double x[3], const adcgs_cloud_place *place)
 {
-    const double d[3] = { x[0] - place->x[0], x[1] - place->x[1], x[2] - place->x[2] };
+    const double d[3] = {x[0] - place->x[0], x[1] - place->x[1], x[2] - place->x[2]};
     return adcgs_v3_dot(d, d);
 }
 
@@ -137,9 +137,9 @@ static double gap2(const adcgs_cloud *c, double x, int64_t cell)
 double adcgs_cloud_nearest(const adcgs_cloud *c, const double x[3], const float rgb[3], double reach, double tint,
                            uint32_t *found)
 {
-    query q = { .x = x, .rgb = rgb, .tint = tint, .most = reach * reach, .least = -1 };
+    query q = {.x = x, .rgb = rgb, .tint = tint, .most = reach * reach, .least = -1};
     const walk w = walk_about(c, x, reach);
-    const int64_t own[3] = { cell_along(c, x[0]), cell_along(c, x[1]), cell_along(c, x[2]) };
+    const int64_t own[3] = {cell_along(c, x[0]), cell_along(c, x[1]), cell_along(c, x[2])};
     int64_t cell[3];
     look_in_cell(c, own, &q); /* its best match prunes most other cells */
     for (cell[2] = w.low[2]; cell[2] <= w.high[2]; cell[2]++) {
@@ -173,7 +173,7 @@ uint32_t adcgs_cloud_within(const adcgs_cloud *c, const double x[3], double reac
 /** Direction of least variance of the points. */
 static void find_normal(const adcgs_cloud *c, const uint32_t *near, uint32_t n, double out[3])
 {
-    double mean[3] = { 0, 0, 0 }, spread[9] = { 0 }, v[9];
+    double mean[3] = {0, 0, 0}, spread[9] = {0}, v[9];
     for (uint32_t i = 0; i < n; i++)
         for (int a = 0; a < 3; a++)
             mean[a] += c->p[near[i]].x[a] / n;
@@ -194,12 +194,12 @@ void adcgs_cloud_normals(const adcgs_cloud *c, double reach, const adcgs_stereo_
     uint32_t near[AROUND];
     for (uint32_t i = 0; i < c->n; i++) {
         const uint32_t n = adcgs_cloud_within(c, c->p[i].x, reach, near, AROUND);
-        double out[3] = { 0, 0, 0 }, faces = 0;
+        double out[3] = {0, 0, 0}, faces = 0;
         if (n >= NORMAL_LEAST)
             find_normal(c, near, n, out);
         for (int k = 0; k < rig->n_cameras; k++) {
             const double *at = rig->camera[k].view.centre;
-            double to[3] = { at[0] - c->p[i].x[0], at[1] - c->p[i].x[1], at[2] - c->p[i].x[2] };
+            double to[3] = {at[0] - c->p[i].x[0], at[1] - c->p[i].x[1], at[2] - c->p[i].x[2]};
             if (!rig->camera[k].background)
                 continue;
             adcgs_v3_normalise(to);

@@ -17,10 +17,10 @@ typedef struct adcgs_cloud_place {
 /** Zero-initialise before use. The colours and bodies of the points may change later, but not their positions. */
 typedef struct adcgs_cloud {
     const adcgs_stereo_point *p;
-    uint32_t n, used;   /**< number of points; number of points in the grid */
-    double edge;        /**< of a cell, scene units */
-    uint32_t mask;      /**< of a cell's hash */
-    uint32_t *first;    /**< [mask + 2] indices into at */
+    uint32_t n, used;      /**< number of points; number of points in the grid */
+    double edge;           /**< of a cell, scene units */
+    uint32_t mask;         /**< of a cell's hash */
+    uint32_t *first;       /**< [mask + 2] indices into at */
     adcgs_cloud_place *at; /**< [used] */
 } adcgs_cloud;
 

@@ -7,13 +7,13 @@
 #include <math.h>
 
 enum { SIDE = ADCGS_WINDOW_SIDE, RADIUS = SIDE / 2, WINDOW = ADCGS_WINDOW };
-enum { CELL = 3 };      /* pixels between candidate keypoints */
-enum { BESIDE = 2 };    /* pixels: radius around a match; a similar window outside it makes the match ambiguous */
-#define ALIKE 0.88f     /* minimum correlation of a match */
-#define SHARP 0.04f     /* minimum decrease of the correlation one pixel away */
-#define UNIQUE 0.06f    /* minimum lead over all windows outside the radius */
-#define SMALLEST 0.5    /* minimum scale between the windows in the two images */
-#define LARGEST 2.0     /* maximum scale between them */
+enum { CELL = 3 };   /* pixels between candidate keypoints */
+enum { BESIDE = 2 }; /* pixels: radius around a match; a similar window outside it makes the match ambiguous */
+#define ALIKE 0.88f  /* minimum correlation of a match */
+#define SHARP 0.04f  /* minimum decrease of the correlation one pixel away */
+#define UNIQUE 0.06f /* minimum lead over all windows outside the radius */
+#define SMALLEST 0.5 /* minimum scale between the windows in the two images */
+#define LARGEST 2.0  /* maximum scale between them */
 
 /* ---- Windows ---- */
 
@@ -59,9 +59,9 @@ static int is_peak(const float *alike, int w)
 static int is_keypoint(const adcgs_patch_image *o, int x, int y)
 {
     float own[WINDOW], alike[9];
-    const double at[2] = { x + 0.5, y + 0.5 };
+    const double at[2] = {x + 0.5, y + 0.5};
     if (!(o->over[y * o->view->w + x] > 0) ||
-        !(adcgs_window_sample(own, o->view, at, (const double[]){ 1, 0 }, (const double[]){ 0, 1 }) > ADCGS_WINDOW_TEXTURE))
+        !(adcgs_window_sample(own, o->view, at, (const double[]){1, 0}, (const double[]){0, 1}) > ADCGS_WINDOW_TEXTURE))
         return 0;
     for (int j = 0; j < 3; j++)
         compare_row(o, own, x - 1, y + j - 1, 3, alike + 3 * j);
@@ -82,7 +82,7 @@ static void choose_keypoints(adcgs_patch_image *o, const adcgs_depths *d)
                     continue;
                 all += !pass;
                 if (pass && (int64_t)seen++ * ADCGS_KEYPOINTS_MAX / ADCGS_MAX(all, ADCGS_KEYPOINTS_MAX) >= o->n_keypoints)
-                    o->keypoint[o->n_keypoints++] = (adcgs_keypoint){ x, y, 1 / (double)d->inverse[i] };
+                    o->keypoint[o->n_keypoints++] = (adcgs_keypoint){x, y, 1 / (double)d->inverse[i]};
             }
 }
 
@@ -114,7 +114,7 @@ void adcgs_patch_image_clear(adcgs_patch_image *o)
 {
     adcgs_free(NULL, o->grey);
     adcgs_free(NULL, o->over);
-    *o = (adcgs_patch_image){ .n_keypoints = 0 };
+    *o = (adcgs_patch_image){.n_keypoints = 0};
 }
 
 /* ---- Search ---- */
@@ -126,11 +126,11 @@ typedef struct field {
 
 static field field_about(const adcgs_stereo_view *v, const double at[2], int reach)
 {
-    field f = { RADIUS, RADIUS, v->w - RADIUS, v->h - RADIUS };
+    field f = {RADIUS, RADIUS, v->w - RADIUS, v->h - RADIUS};
     if (reach) {
         const int x = (int)floor(at[0]), y = (int)floor(at[1]);
-        f = (field){ ADCGS_MAX(f.x0, x - reach), ADCGS_MAX(f.y0, y - reach), ADCGS_MIN(f.x1, x + reach + 1),
-                     ADCGS_MIN(f.y1, y + reach + 1) };
+        f = (field){ADCGS_MAX(f.x0, x - reach), ADCGS_MAX(f.y0, y - reach), ADCGS_MIN(f.x1, x + reach + 1),
+                    ADCGS_MIN(f.y1, y + reach + 1)};
     }
     return f;
 }
@@ -177,8 +177,8 @@ void adcgs_correspondences_add(adcgs_correspondences *s, const adcgs_patch_image
 {
     for (int i = 0; i < other->n_keypoints && s->n < ADCGS_CORRESPONDENCES_MAX; i += every) {
         const adcgs_keypoint *const m = &other->keypoint[i];
-        const double own_at[2] = { m->px + 0.5, m->py + 0.5 };
-        double at[2] = { 0, 0 }, right[2] = { 1, 0 }, down[2] = { 0, 1 };
+        const double own_at[2] = {m->px + 0.5, m->py + 0.5};
+        double at[2] = {0, 0}, right[2] = {1, 0}, down[2] = {0, 1};
         float own[WINDOW];
         if (reach && (!adcgs_window_pass(other->view, pose, m->px, m->py, m->depth, at, right, down) ||
                       !turn_round(right, down) || !(at[0] >= 0 && at[1] >= 0 && at[0] < pose->w && at[1] < pose->h)))

@@ -10,14 +10,14 @@ enum {
     ROUNDS = 10, /* maximum number of steps */
     LEAST = 30   /* minimum number of samples */
 };
-#define OFF_FIRST 0.20     /* colour difference at which the agreement is one half, in the first round */
-#define OFF_LAST 0.08      /* the same in the last round */
-#define OFF_MIDDLE 0.12    /* the same from which iteration may stop early */
-#define DAMPING 1e-3       /* relative increase of the system's diagonal */
-#define STIFF 0.05         /* prior of slope 1, as a sum of squared colours */
-#define SLOPE_MOST 3.0     /* maximum slope of colours */
-#define STEP_LEAST 0.01    /* pixels: step length at which iteration stops */
-#define STEP_MOST 1.5      /* pixels: maximum step of the body's points, approximately */
+#define OFF_FIRST 0.20  /* colour difference at which the agreement is one half, in the first round */
+#define OFF_LAST 0.08   /* the same in the last round */
+#define OFF_MIDDLE 0.12 /* the same from which iteration may stop early */
+#define DAMPING 1e-3    /* relative increase of the system's diagonal */
+#define STIFF 0.05      /* prior of slope 1, as a sum of squared colours */
+#define SLOPE_MOST 3.0  /* maximum slope of colours */
+#define STEP_LEAST 0.01 /* pixels: step length at which iteration stops */
+#define STEP_MOST 1.5   /* pixels: maximum step of the body's points, approximately */
 
 int adcgs_sample_image(const adcgs_stereo_camera *c, int frame, const double at[2], adcgs_sample *s)
 {
@@ -40,8 +40,8 @@ int adcgs_sample_image(const adcgs_stereo_camera *c, int frame, const double at[
 
 /** Sums of one pass over points and views. */
 typedef struct pass {
-    double off;      /* colour difference at which the agreement is one half */
-    int moves;       /* 1: a step is wanted, so a and b are accumulated */
+    double off; /* colour difference at which the agreement is one half */
+    int moves;  /* 1: a step is wanted, so a and b are accumulated */
     double centre[3];
     double a[36], b[6];
     adcgs_gain_sums gains;
@@ -52,9 +52,9 @@ typedef struct pass {
 static void derive(const adcgs_stereo_view *v, const double x[3], const double centre[3], double depth, const double at[2],
                    double row[2][6])
 {
-    const double arm[3] = { x[0] - centre[0], x[1] - centre[1], x[2] - centre[2] };
-    const double f[2] = { v->fx / depth, v->fy / depth };
-    const double ray[2] = { (at[0] - v->cx) / v->fx, (at[1] - v->cy) / v->fy };
+    const double arm[3] = {x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]};
+    const double f[2] = {v->fx / depth, v->fy / depth};
+    const double ray[2] = {(at[0] - v->cx) / v->fx, (at[1] - v->cy) / v->fy};
     for (int k = 0; k < 2; k++) {
         double to[3];
         for (int a = 0; a < 3; a++)
@@ -129,7 +129,7 @@ static void run(pass *p, const adcgs_body_model *m, const adcgs_frame_views *vie
 /** Centroid of the body, which decouples rotation from translation, and the RMS distance of the points from it. */
 static double find_centre(const adcgs_body_model *m, const adcgs_rigid *at, double centre[3])
 {
-    double mean[3] = { 0, 0, 0 }, far = 0;
+    double mean[3] = {0, 0, 0}, far = 0;
     for (uint32_t i = 0; i < m->n; i++)
         for (int a = 0; a < 3; a++)
             mean[a] += m->p[i].x[a] / m->n;
@@ -166,7 +166,7 @@ static int step(pass *p, const adcgs_body_model *m, double radius, adcgs_placeme
 void adcgs_direct_judge(const adcgs_body_model *m, const adcgs_frame_views *views, uint32_t stride, adcgs_placement *place)
 {
     for (int round = 0; round < 3; round++) { /* fits the gains, then measures the residual */
-        pass p = { .off = OFF_LAST };
+        pass p = {.off = OFF_LAST};
         run(&p, m, views, stride, place);
         place->light = p.n > 0 ? p.light / p.n : 0;
         if (round < 2)
@@ -178,7 +178,7 @@ void adcgs_direct_refine(const adcgs_body_model *m, const adcgs_frame_views *vie
 {
     for (int round = 0; round < ROUNDS; round++) {
         const double along = round / (ROUNDS - 1.0);
-        pass p = { .off = OFF_FIRST + along * (OFF_LAST - OFF_FIRST), .moves = 1 };
+        pass p = {.off = OFF_FIRST + along * (OFF_LAST - OFF_FIRST), .moves = 1};
         const double radius = find_centre(m, &place->at, p.centre);
         run(&p, m, views, stride, place);
         const int on = step(&p, m, radius, place);

@@ -31,7 +31,7 @@ adcgs_status adcgs_stereo_list_add(adcgs_stereo_list *list, const adcgs_stereo_p
 void adcgs_stereo_list_clear(adcgs_stereo_list *list)
 {
     adcgs_free(NULL, list->point);
-    *list = (adcgs_stereo_list){ 0, 0, NULL };
+    *list = (adcgs_stereo_list){0, 0, NULL};
 }
 
 adcgs_verdict adcgs_depths_judge(const adcgs_depths *d, const double x[3], double there[3])
@@ -117,13 +117,13 @@ static adcgs_status fuse_one(adcgs_stereo_list *list, const adcgs_depths *depths
 adcgs_status adcgs_fuse(adcgs_stereo_list *list, adcgs_depths *depths, int n, const uint8_t *const *wanted,
                         const adcgs_stereo_point *like, adcgs_error *error)
 {
-    uint8_t *good[ADCGS_STEREO_CAMERAS] = { NULL };
+    uint8_t *good[ADCGS_STEREO_CAMERAS] = {NULL};
     adcgs_status status = ADCGS_OK;
     for (int i = 0; i < n && status == ADCGS_OK; i++) {
         good[i] = adcgs_alloc(NULL, (size_t)depths[i].w * (size_t)depths[i].h, 1, error);
         status = good[i] ? fuse_one(list, depths, n, i, wanted[i], like, good[i], error) : adcgs_alloc_status(error);
     }
-    for (int i = 0; i < n; i++) { /* after all views, so that no result depends on their order */
+    for (int i = 0; i < n; i++) {                    /* after all views, so that no result depends on their order */
         if (status == ADCGS_OK && depths[i].quality) /* views without matching have no quality map */
             memcpy(depths[i].quality, good[i], (size_t)depths[i].w * (size_t)depths[i].h);
         adcgs_free(NULL, good[i]);

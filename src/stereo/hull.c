@@ -30,8 +30,8 @@ typedef enum content { EMPTY, FULL, MIXED } content;
 /** Lowers one distance to the values that its neighbours imply. */
 static void relax(float *d, int w, int x, int y, int h, int step)
 {
-    static const int across[4] = { -1, 0, 1, -1 }, down[4] = { -1, -1, -1, 0 };
-    static const float way[4] = { 1.41421356f, 1, 1.41421356f, 1 };
+    static const int across[4] = {-1, 0, 1, -1}, down[4] = {-1, -1, -1, 0};
+    static const float way[4] = {1.41421356f, 1, 1.41421356f, 1};
     for (int k = 0; k < 4; k++) {
         const int a = x + step * across[k], b = y + step * down[k];
         if (a >= 0 && b >= 0 && a < w && b < h)
@@ -78,7 +78,7 @@ static void hull_clear(hull *o)
 
 static adcgs_status hull_init(hull *o, const adcgs_stereo_view *views, const uint8_t *const *moves, int n, adcgs_error *error)
 {
-    *o = (hull){ .n = n, .views = views };
+    *o = (hull){.n = n, .views = views};
     for (int i = 0; i < n; i++) {
         const size_t plane = (size_t)views[i].w * (size_t)views[i].h;
         o->inside[i] = adcgs_alloc(NULL, plane, sizeof(float), error);
@@ -104,10 +104,10 @@ static content ask(const hull *o, const double x[3], double half, double *pixel)
     *pixel = 0;
     for (int i = 0; i < o->n; i++) {
         const adcgs_stereo_view *v = &o->views[i];
-        double at[2] = { 0, 0 }, depth;
+        double at[2] = {0, 0}, depth;
         const int in_picture = adcgs_stereo_rig_project(v, x, at, &depth);
         const double around = 1.7320508 * half; /* radius of the circumscribed sphere */
-        if (depth <= 2 * around) { /* the sphere encloses the camera or lies behind it */
+        if (depth <= 2 * around) {              /* the sphere encloses the camera or lies behind it */
             mixed += depth > -around;
             seen += depth > -around;
             continue;
@@ -151,12 +151,12 @@ static adcgs_status halve(hull *o, const double x[3], double half, int depth, ad
     if (ask(o, x, half, &pixel) != MIXED || o->surface.n > POINTS_MOST)
         return ADCGS_OK;
     if (2 * half <= pixel || depth == DEEPEST) {
-        const adcgs_stereo_point p = { .x = { x[0], x[1], x[2] }, .size = (float)(2 * half) };
+        const adcgs_stereo_point p = {.x = {x[0], x[1], x[2]}, .size = (float)(2 * half)};
         return is_within(o, x) ? adcgs_stereo_list_add(&o->surface, &p, error) : ADCGS_OK;
     }
     for (int k = 0; k < 8; k++) {
-        const double part[3] = { x[0] + (k & 1 ? half : -half) / 2, x[1] + (k & 2 ? half : -half) / 2,
-                                 x[2] + (k & 4 ? half : -half) / 2 };
+        const double part[3] = {x[0] + (k & 1 ? half : -half) / 2, x[1] + (k & 2 ? half : -half) / 2,
+                                x[2] + (k & 4 ? half : -half) / 2};
         ADCGS_TRY(halve(o, part, half / 2, depth + 1, error));
     }
     return ADCGS_OK;

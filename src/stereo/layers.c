@@ -46,7 +46,7 @@ static void find_reach(adcgs_layers *l)
 /** Sets the colour from the softened image closest to the point's own colour: its source view, or a similar one. */
 static void recolour(adcgs_stereo_point *p, const float normal[3], const adcgs_frame_views *views)
 {
-    const double n[3] = { (double)normal[0], (double)normal[1], (double)normal[2] };
+    const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
     float best[3], least = 4;
     for (int k = 0; k < views->n; k++) {
         adcgs_sample s;
@@ -71,7 +71,7 @@ static void recolour(adcgs_stereo_point *p, const float normal[3], const adcgs_f
 adcgs_status adcgs_layers_init(adcgs_layers *l, const adcgs_stereo *stereo, const adcgs_stereo_rig *rig, adcgs_error *error)
 {
     uint32_t end = 0;
-    *l = (adcgs_layers){ .rig = rig, .n = rig->n_frames, .p = adcgs_alloc(NULL, stereo->n_moving, sizeof *l->p, error) };
+    *l = (adcgs_layers){.rig = rig, .n = rig->n_frames, .p = adcgs_alloc(NULL, stereo->n_moving, sizeof *l->p, error)};
     if (!l->p)
         return adcgs_alloc_status(error);
     memcpy(l->p, stereo->moving, stereo->n_moving * sizeof *l->p);
@@ -105,5 +105,5 @@ void adcgs_layers_clear(adcgs_layers *l)
     }
     adcgs_free(NULL, l->normal);
     adcgs_free(NULL, l->p);
-    *l = (adcgs_layers){ .n = 0 };
+    *l = (adcgs_layers){.n = 0};
 }

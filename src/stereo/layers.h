@@ -8,12 +8,12 @@
 typedef struct adcgs_layers {
     const adcgs_stereo_rig *rig;
     int n;
-    double pixel, reach;      /**< scene units: pixel size, larger if points are sparse; radius with ten points on average */
+    double pixel, reach; /**< scene units: pixel size, larger if points are sparse; radius with ten points on average */
     uint32_t begin[ADCGS_MATCHING_FRAMES_MAX + 1];
     adcgs_cloud all[ADCGS_MATCHING_FRAMES_MAX], few[ADCGS_MATCHING_FRAMES_MAX];
     adcgs_frame_views views[ADCGS_MATCHING_FRAMES_MAX];
-    adcgs_stereo_point *p;    /**< [begin[n]] with colours of the softened images */
-    float (*normal)[3];       /**< [begin[n]] */
+    adcgs_stereo_point *p; /**< [begin[n]] with colours of the softened images */
+    float (*normal)[3];    /**< [begin[n]] */
 } adcgs_layers;
 
 /** Builds the layers of the moving points. rig: softened. The caller clears the layers, after a failure too. */

@@ -79,9 +79,9 @@ static void find_ends(void *arg, int part, int thread)
     }
 }
 
-void adcgs_stereo_trim_lifetimes(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig,
-                                 const adcgs_depths *still, adcgs_pool *pool)
+void adcgs_stereo_trim_lifetimes(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig, const adcgs_depths *still,
+                                 adcgs_pool *pool)
 {
-    job j = { .points = points, .n = n, .rig = rig, .still = still };
+    job j = {.points = points, .n = n, .rig = rig, .still = still};
     adcgs_pool_run(pool, find_ends, &j, (int)((n + PART - 1) / PART));
 }

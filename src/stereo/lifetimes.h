@@ -14,7 +14,7 @@
  * Sets the ends of moving points with known velocities, for static cameras. still: static depths of each camera with a
  * background, in order. A camera with a static surface in front of the point has no vote.
  */
-void adcgs_stereo_trim_lifetimes(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig,
-                                 const adcgs_depths *still, adcgs_pool *pool);
+void adcgs_stereo_trim_lifetimes(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig, const adcgs_depths *still,
+                                 adcgs_pool *pool);
 
 #endif

@@ -16,7 +16,8 @@ static float grey_at(const adcgs_stereo_view *v, double x, double y)
     if (!(p[3] > 0.99f && p[7] > 0.99f && q[3] > 0.99f && q[7] > 0.99f))
         return NAN;
     return ((1 - b) * ((1 - a) * (p[0] + p[1] + p[2]) + a * (p[4] + p[5] + p[6])) +
-            b * ((1 - a) * (q[0] + q[1] + q[2]) + a * (q[4] + q[5] + q[6]))) * (1.0f / 3);
+            b * ((1 - a) * (q[0] + q[1] + q[2]) + a * (q[4] + q[5] + q[6]))) *
+           (1.0f / 3);
 }
 
 float adcgs_window_sample(float out[ADCGS_WINDOW], const adcgs_stereo_view *v, const double at[2], const double right[2],

@@ -4,7 +4,6 @@
 
 #include "stereo/direct.h"
 
-
 enum {
     BODY_MOST = 6000, /* points */
     HOPS = 6,         /* maximum number of growth steps per frame, each of length reach */
@@ -29,8 +28,9 @@ static void count(adcgs_track *t, const adcgs_layers *l, int frame, uint8_t *mar
         const int found = adcgs_body_match(&t->model, i, x, &l->all[frame], &t->place[frame], &j);
         if (found && mark)
             mark[j] = 1;
-        t->model.more[i].agreed = (uint16_t)(t->model.more[i].agreed +
-            (found || adcgs_direct_point(&t->model, i, &l->views[frame], &t->place[frame]) > FITS));
+        t->model.more[i].agreed =
+            (uint16_t)(t->model.more[i].agreed +
+                       (found || adcgs_direct_point(&t->model, i, &l->views[frame], &t->place[frame]) > FITS));
     }
 }
 
@@ -72,8 +72,8 @@ static adcgs_status add_point(adcgs_track *t, const adcgs_layers *l, int frame, 
     memcpy(p.x, x, sizeof x);
     if (adcgs_cloud_within(own, x, t->model.pixel, &near, 1) || t->model.n >= BODY_MOST)
         return ADCGS_OK;
-    adcgs_rigid_turn(back, (const double[]){ (double)n[0], (double)n[1], (double)n[2] }, turned);
-    ADCGS_TRY(adcgs_body_add(&t->model, &p, (const float[]){ (float)turned[0], (float)turned[1], (float)turned[2] }, error));
+    adcgs_rigid_turn(back, (const double[]){(double)n[0], (double)n[1], (double)n[2]}, turned);
+    ADCGS_TRY(adcgs_body_add(&t->model, &p, (const float[]){(float)turned[0], (float)turned[1], (float)turned[2]}, error));
     for (int a = 0; a < 3; a++)
         t->model.p[t->model.n - 1].rgb[a] /= t->place[frame].gain[t->model.more[t->model.n - 1].side][a];
     return ADCGS_OK;
@@ -82,7 +82,7 @@ static adcgs_status add_point(adcgs_track *t, const adcgs_layers *l, int frame, 
 adcgs_status adcgs_members_grow(adcgs_track *t, const adcgs_layers *l, int frame, adcgs_error *error)
 {
     const adcgs_cloud *c = &l->all[frame];
-    adcgs_cloud own = { .p = NULL };
+    adcgs_cloud own = {.p = NULL};
     adcgs_rigid back;
     uint8_t *mark = adcgs_alloc(NULL, c->n, 1, error);
     adcgs_status status = mark ? ADCGS_OK : adcgs_alloc_status(error);

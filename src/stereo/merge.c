@@ -13,8 +13,8 @@ enum {
     AROUND = 48, /* maximum number of neighbours */
     MEET = 6     /* minimum number of points for smoothing */
 };
-#define EDGE 1.2    /* pixels: size of a cell */
-#define SMOOTH 2.5  /* pixels: radius of smoothing */
+#define EDGE 1.2   /* pixels: size of a cell */
+#define SMOOTH 2.5 /* pixels: radius of smoothing */
 
 /** A frame's point, transformed to the rest pose. */
 typedef struct entry {
@@ -48,7 +48,7 @@ static int set_entry(entry *e, const adcgs_track *t, const adcgs_layers *l, cons
     if (p->body)
         return 0;
     adcgs_rigid_apply(back, p->x, e->x);
-    adcgs_rigid_turn(back, (const double[]){ (double)n[0], (double)n[1], (double)n[2] }, normal);
+    adcgs_rigid_turn(back, (const double[]){(double)n[0], (double)n[1], (double)n[2]}, normal);
     e->frame = frame;
     e->size = p->size;
     e->cell = 0;
@@ -65,7 +65,7 @@ static int set_entry(entry *e, const adcgs_track *t, const adcgs_layers *l, cons
 /** Mean of a cell's entries. Returns 0 if they are all of one frame. */
 static int mean_of(const entry *e, uint32_t n, adcgs_stereo_point *p, float normal[3])
 {
-    *p = (adcgs_stereo_point){ .t = 0.5f, .moves = 1 };
+    *p = (adcgs_stereo_point){.t = 0.5f, .moves = 1};
     memset(normal, 0, 3 * sizeof *normal);
     for (uint32_t i = 0; i < n; i++) {
         p->size += e[i].size / (float)n;
@@ -116,7 +116,7 @@ static void smooth_point(const adcgs_body_model *m, const adcgs_cloud *own, uint
 
 static adcgs_status smooth(adcgs_body_model *m, adcgs_error *error)
 {
-    adcgs_cloud own = { .p = NULL };
+    adcgs_cloud own = {.p = NULL};
     double(*to)[3] = adcgs_alloc(NULL, m->n, sizeof *to, error);
     adcgs_status status = to ? adcgs_cloud_init(&own, m->p, m->n, 1, SMOOTH * m->pixel, error) : adcgs_alloc_status(error);
     for (uint32_t i = 0; i < m->n && status == ADCGS_OK; i++)
@@ -130,12 +130,12 @@ static adcgs_status smooth(adcgs_body_model *m, adcgs_error *error)
 
 adcgs_status adcgs_track_merge(adcgs_track *t, const adcgs_layers *l, adcgs_error *error)
 {
-    adcgs_cloud own = { .p = NULL };
-    adcgs_body_model merged = { .pixel = t->model.pixel };
+    adcgs_cloud own = {.p = NULL};
+    adcgs_body_model merged = {.pixel = t->model.pixel};
     uint32_t n = 0;
     entry *e = adcgs_alloc(NULL, l->begin[l->n], sizeof *e, error);
-    adcgs_status status = e ? adcgs_cloud_init(&own, t->model.p, t->model.n, 1, 2 * t->model.pixel, error)
-                            : adcgs_alloc_status(error);
+    adcgs_status status =
+        e ? adcgs_cloud_init(&own, t->model.p, t->model.n, 1, 2 * t->model.pixel, error) : adcgs_alloc_status(error);
     for (int m = 0; m < l->n && status == ADCGS_OK; m++) {
         adcgs_rigid back;
         adcgs_rigid_inverse(&t->place[m].at, &back);

@@ -6,15 +6,15 @@
 
 #include <math.h>
 
-enum { SEEN_LEAST = 4 }; /* minimum number of other images for a background colour */
+enum { SEEN_LEAST = 4 };   /* minimum number of other images for a background colour */
 enum { ALIKE_MOST = 128 }; /* maximum number of velocities in a median */
-#define ALIKE_REACH 0.15     /* scene units: radius of the velocity median */
+#define ALIKE_REACH 0.15   /* scene units: radius of the velocity median */
 enum {
     OFF_LEAST = 9,  /* minimum number of differing pixels in a 5x5 window */
     PART_LEAST = 24 /* pixels: minimum size of a moving part */
 };
-#define MOVED (22 / 255.0f)  /* minimum difference from all background colours nearby */
-#define HIDDEN 1.08          /* relative to the depth of the surface; points farther away are hidden */
+#define MOVED (22 / 255.0f) /* minimum difference from all background colours nearby */
+#define HIDDEN 1.08         /* relative to the depth of the surface; points farther away are hidden */
 
 /* ---- Filling of static depths ---- */
 
@@ -173,7 +173,7 @@ static uint32_t number_parts(uint32_t *part, int w, int h, int *stack)
         part[i] = next;
         while (begin < n) { /* visited pixels stay on the stack */
             const int p = stack[begin++], x = p % w, y = p / w;
-            const int about[4] = { x > 0 ? p - 1 : -1, x < w - 1 ? p + 1 : -1, y > 0 ? p - w : -1, y < h - 1 ? p + w : -1 };
+            const int about[4] = {x > 0 ? p - 1 : -1, x < w - 1 ? p + 1 : -1, y > 0 ? p - w : -1, y < h - 1 ? p + w : -1};
             for (int k = 0; k < 4; k++)
                 if (about[k] >= 0 && part[about[k]] == 1) {
                     part[about[k]] = next;
@@ -209,7 +209,7 @@ static adcgs_status add_part(adcgs_stereo_list *list, const adcgs_stereo_view *v
 {
     for (int y = 0; y < view->h; y++)
         for (int x = 0; x < view->w; x++) {
-            adcgs_stereo_point p = { .t = t, .moves = 1, .size = (float)(1 / ((double)inverse * view->fx)) };
+            adcgs_stereo_point p = {.t = t, .moves = 1, .size = (float)(1 / ((double)inverse * view->fx))};
             if (part[y * view->w + x] != number)
                 continue;
             adcgs_stereo_rig_lift(view, x, y, 1 / (double)inverse, p.x);

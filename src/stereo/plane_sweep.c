@@ -11,7 +11,7 @@ enum {
     PLANES_MOST = 112
 };
 #define WINDOW (SIDE * SIDE)
-#define NOISE 1e-4f         /* variance of a window without texture */
+#define NOISE 1e-4f /* variance of a window without texture */
 enum {
     UNLIKE_MOST = 120,                            /* maximum cost of uncorrelated windows */
     COLOUR_MOST = ADCGS_SWEEP_COST - UNLIKE_MOST, /* maximum cost of a colour difference */
@@ -32,7 +32,7 @@ typedef struct passage {
 
 static passage passage_of(const adcgs_stereo_view *from, const adcgs_stereo_view *to)
 {
-    passage p = { .fx = (float)to->fx, .fy = (float)to->fy, .cx = (float)(to->cx - 0.5), .cy = (float)(to->cy - 0.5) };
+    passage p = {.fx = (float)to->fx, .fy = (float)to->fy, .cx = (float)(to->cx - 0.5), .cy = (float)(to->cy - 0.5)};
     for (int i = 0; i < 3; i++) {
         double move = 0;
         for (int j = 0; j < 3; j++) {
@@ -50,7 +50,7 @@ static passage passage_of(const adcgs_stereo_view *from, const adcgs_stereo_view
 /** Distance in pixels between the positions of a pixel in another view at two depths; 0 if one is behind that camera. */
 static double travel(const adcgs_stereo_view *v, const adcgs_stereo_view *to, int px, int py, double nearest, double farthest)
 {
-    double x[3], near_at[2] = { 0, 0 }, far_at[2] = { 0, 0 }, depth = 0;
+    double x[3], near_at[2] = {0, 0}, far_at[2] = {0, 0}, depth = 0;
     adcgs_stereo_rig_lift(v, px, py, nearest, x);
     const int sees_near = adcgs_stereo_rig_project(to, x, near_at, &depth) || depth > 1e-6;
     adcgs_stereo_rig_lift(v, px, py, farthest, x);
@@ -79,22 +79,22 @@ typedef struct windows {
 /** Arrays over the part with a margin of RADIUS, filled by repetition at the image border. */
 typedef struct field {
     const adcgs_sweep *s;
-    int w, h;             /* including the margin */
-    float *ray[2];        /* [w], [h] of the view's pixels */
-    float *own;           /* [h][w][4] pixels of the view */
-    float *grey;          /* [h][w] of the view */
-    windows window[2];    /* all pixels; moving pixels of thin objects */
-    float *mask;          /* [h][w] 1: a pixel of the view counts in the latter */
-    float *at[2];         /* [w] position of a row of pixels in the neighbour */
-    float *other;         /* [w][4] colour there */
-    uint8_t *inside;      /* [w] 1: inside the image */
-    uint8_t *still;       /* [w] 1: background only */
-    float *sum[4];        /* [h][w] neighbour's grey, its square, its product with the view's, difference of colour */
-    float *down;          /* [s->h][w] sums of columns */
-    float *total[4];      /* [s->h][s->w] sums of windows */
-    uint8_t *seen;        /* [s->h][s->w] */
-    uint8_t *against;     /* [s->h][s->w] 1: the view shows moving content, the neighbour background */
-    int16_t *cost;        /* [n_sources][s->h][s->w] */
+    int w, h;          /* including the margin */
+    float *ray[2];     /* [w], [h] of the view's pixels */
+    float *own;        /* [h][w][4] pixels of the view */
+    float *grey;       /* [h][w] of the view */
+    windows window[2]; /* all pixels; moving pixels of thin objects */
+    float *mask;       /* [h][w] 1: a pixel of the view counts in the latter */
+    float *at[2];      /* [w] position of a row of pixels in the neighbour */
+    float *other;      /* [w][4] colour there */
+    uint8_t *inside;   /* [w] 1: inside the image */
+    uint8_t *still;    /* [w] 1: background only */
+    float *sum[4];     /* [h][w] neighbour's grey, its square, its product with the view's, difference of colour */
+    float *down;       /* [s->h][w] sums of columns */
+    float *total[4];   /* [s->h][s->w] sums of windows */
+    uint8_t *seen;     /* [s->h][s->w] */
+    uint8_t *against;  /* [s->h][s->w] 1: the view shows moving content, the neighbour background */
+    int16_t *cost;     /* [n_sources][s->h][s->w] */
 } field;
 
 static inline float grey_of(const float *pixel)
@@ -121,9 +121,9 @@ static void add_windows(const field *f, const float *values, float *total)
 static void project_row(const field *f, const passage *p, float inverse, int y)
 {
     const float ry = f->ray[1][y];
-    const float first[3] = { p->turn[1] * ry + p->turn[2] + inverse * p->move[0],
-                             p->turn[4] * ry + p->turn[5] + inverse * p->move[1],
-                             p->turn[7] * ry + p->turn[8] + inverse * p->move[2] };
+    const float first[3] = {p->turn[1] * ry + p->turn[2] + inverse * p->move[0],
+                            p->turn[4] * ry + p->turn[5] + inverse * p->move[1],
+                            p->turn[7] * ry + p->turn[8] + inverse * p->move[2]};
     for (int x = 0; x < f->w; x++) {
         const float rx = f->ray[0][x], z = first[2] + p->turn[6] * rx, over = 1 / (z > 1e-4f ? z : -1e-4f);
         f->at[0][x] = (first[0] + p->turn[0] * rx) * over * p->fx + p->cx;
@@ -159,7 +159,7 @@ static void fetch(const field *f, const adcgs_stereo_view *source, const passage
     for (int y = 0; y < f->h; y++) {
         const size_t row = (size_t)y * (size_t)f->w;
         const float *own = f->own + 4 * row, *other = f->other, *grey = f->grey + row;
-        float *sum[4] = { f->sum[0] + row, f->sum[1] + row, f->sum[2] + row, f->sum[3] + row };
+        float *sum[4] = {f->sum[0] + row, f->sum[1] + row, f->sum[2] + row, f->sum[3] + row};
         project_row(f, p, inverse, y);
         sample_row(f, source);
         for (int x = 0; x < f->w; x++) {
@@ -265,7 +265,7 @@ static void field_free(field *f)
 
 static adcgs_status field_alloc(field *f, const adcgs_sweep *s, adcgs_error *error)
 {
-    *f = (field){ .s = s, .w = s->w + 2 * RADIUS, .h = s->h + 2 * RADIUS };
+    *f = (field){.s = s, .w = s->w + 2 * RADIUS, .h = s->h + 2 * RADIUS};
     const size_t whole = (size_t)f->w * (size_t)f->h, part = (size_t)s->w * (size_t)s->h;
     int good = 1;
     for (int k = 0; k < 4; k++) {

@@ -18,9 +18,9 @@ typedef struct adcgs_sweep {
     const adcgs_stereo_view *view;
     const adcgs_stereo_view *source[ADCGS_SWEEP_SOURCES];
     int n_sources;
-    int x, y, w, h;      /**< of the part */
+    int x, y, w, h; /**< of the part */
     int planes;
-    double first, step;  /**< inverse depth of plane 0, the farthest, and step to the next plane */
+    double first, step; /**< inverse depth of plane 0, the farthest, and step to the next plane */
 } adcgs_sweep;
 
 /** Sets planes between two depths, about one pixel apart in the neighbour with the largest disparity. */

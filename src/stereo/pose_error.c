@@ -8,18 +8,18 @@
 #include <math.h>
 
 enum { SIDE = ADCGS_WINDOW_SIDE, WINDOW = ADCGS_WINDOW };
-enum { CELL = 7 };                            /* pixels between sampled windows */
-enum { REACH = 4 };                           /* pixels: search range to each side of an epipolar line */
-enum { STEPS_MOST = 200 };                    /* maximum number of steps along a line */
+enum { CELL = 7 };         /* pixels between sampled windows */
+enum { REACH = 4 };        /* pixels: search range to each side of an epipolar line */
+enum { STEPS_MOST = 200 }; /* maximum number of steps along a line */
 enum {
     MATCHES_LEAST = 12, /* minimum number of matches of a pair of cameras for a result */
     MATCHES_MOST = 1024 /* maximum number of matches of a pair of cameras */
 };
-enum { NEIGHBOURS = 2 };                      /* per camera */
-#define AXES_ALIKE 0.85 /* cosine: minimum alignment of the axes of compared cameras */
-#define APART 0.02      /* scene units: minimum distance between them */
-#define ALIKE 0.9       /* minimum correlation of a match */
-#define SHARP 0.05      /* minimum decrease of the correlation one pixel aside; an edge along the line would match anywhere */
+enum { NEIGHBOURS = 2 }; /* per camera */
+#define AXES_ALIKE 0.85  /* cosine: minimum alignment of the axes of compared cameras */
+#define APART 0.02       /* scene units: minimum distance between them */
+#define ALIKE 0.9        /* minimum correlation of a match */
+#define SHARP 0.05       /* minimum decrease of the correlation one pixel aside; an edge along the line would match anywhere */
 
 typedef struct pair {
     const adcgs_stereo_view *from, *to;
@@ -32,10 +32,11 @@ static void compare_across(const pair *p, const float own[WINDOW], const double 
                            const double right[2], const double down[2], double alike[2 * REACH + 1])
 {
     for (int o = -REACH; o <= REACH; o++) {
-        const double there[2] = { at[0] + o * side[0], at[1] + o * side[1] };
+        const double there[2] = {at[0] + o * side[0], at[1] + o * side[1]};
         float other[WINDOW];
         alike[o + REACH] = adcgs_window_sample(other, p->to, there, right, down) > ADCGS_WINDOW_TEXTURE
-                               ? (double)adcgs_window_correlation(own, other) : -1;
+                               ? (double)adcgs_window_correlation(own, other)
+                               : -1;
     }
 }
 
@@ -46,10 +47,10 @@ static double off_line(const pair *p, const float own[WINDOW], int px, int py)
     if (!adcgs_window_pass(p->from, p->to, px, py, p->farthest, ends[0], right, down) ||
         !adcgs_window_pass(p->from, p->to, px, py, p->nearest, ends[1], right, down))
         return (double)NAN;
-    const double way[2] = { ends[1][0] - ends[0][0], ends[1][1] - ends[0][1] }, length = hypot(way[0], way[1]);
+    const double way[2] = {ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]}, length = hypot(way[0], way[1]);
     if (!(length >= 2))
         return (double)NAN;
-    const double side[2] = { -way[1] / length, way[0] / length };
+    const double side[2] = {-way[1] / length, way[0] / length};
     const int steps = ADCGS_MIN((int)ceil(length), STEPS_MOST);
     for (int k = 0; k <= steps; k++) {
         const double inverse = 1 / p->farthest + (1 / p->nearest - 1 / p->farthest) * k / steps;
@@ -78,7 +79,7 @@ static void look_at_pair(void *arg, int i, int thread)
     for (int y = SIDE; y + SIDE < p->from->h && n < MATCHES_MOST; y += CELL)
         for (int x = SIDE; x + SIDE < p->from->w && n < MATCHES_MOST; x += CELL) {
             float own[WINDOW];
-            const double at[2] = { x + 0.5, y + 0.5 }, right[2] = { 1, 0 }, down[2] = { 0, 1 };
+            const double at[2] = {x + 0.5, y + 0.5}, right[2] = {1, 0}, down[2] = {0, 1};
             if (!(adcgs_window_sample(own, p->from, at, right, down) > ADCGS_WINDOW_TEXTURE))
                 continue;
             const double off = off_line(p, own, x, y);
@@ -114,7 +115,7 @@ static int find_pairs(const adcgs_stereo_rig *rig, pair *pairs)
             other = next_neighbour(rig, i, other);
             if (other < 0)
                 break;
-            pairs[n++] = (pair){ &rig->camera[i].view, &rig->camera[other].view, rig->nearest, rig->farthest, (double)NAN };
+            pairs[n++] = (pair){&rig->camera[i].view, &rig->camera[other].view, rig->nearest, rig->farthest, (double)NAN};
         }
     return n;
 }

@@ -6,13 +6,13 @@
 
 #include <math.h>
 
-#define TINT 14.0          /* pixels per unit of colour difference: 0.07 corresponds to one pixel */
-#define MATCH_REACH 2.0    /* pixels: maximum distance of a match in space */
-#define MATCH_OFF 3.0      /* pixels: the same including the colour term */
-#define FACING 0.15        /* cosine: minimum between normal and viewing ray; below it, a surface is seen at a grazing angle */
-#define GAIN_LEAST 0.4     /* minimum lighting gain */
-#define GAIN_MOST 2.5      /* maximum lighting gain */
-#define GAIN_KNOWN 0.2     /* prior of the gains: sum of squares of a channel at which a side's own data has half the weight */
+#define TINT 14.0       /* pixels per unit of colour difference: 0.07 corresponds to one pixel */
+#define MATCH_REACH 2.0 /* pixels: maximum distance of a match in space */
+#define MATCH_OFF 3.0   /* pixels: the same including the colour term */
+#define FACING 0.15     /* cosine: minimum between normal and viewing ray; below it, a surface is seen at a grazing angle */
+#define GAIN_LEAST 0.4  /* minimum lighting gain */
+#define GAIN_MOST 2.5   /* maximum lighting gain */
+#define GAIN_KNOWN 0.2  /* prior of the gains: sum of squares of a channel at which a side's own data has half the weight */
 
 int adcgs_body_side(const float normal[3])
 {
@@ -47,8 +47,7 @@ adcgs_status adcgs_body_add(adcgs_body_model *m, const adcgs_stereo_point *point
     }
     m->p[m->n] = *point;
     m->p[m->n].body = 0;
-    m->more[m->n] = (adcgs_body_more){ .normal = { normal[0], normal[1], normal[2] },
-                                       .side = (uint8_t)adcgs_body_side(normal) };
+    m->more[m->n] = (adcgs_body_more){.normal = {normal[0], normal[1], normal[2]}, .side = (uint8_t)adcgs_body_side(normal)};
     m->n++;
     return ADCGS_OK;
 }
@@ -57,12 +56,12 @@ void adcgs_body_clear(adcgs_body_model *m)
 {
     adcgs_free(NULL, m->p);
     adcgs_free(NULL, m->more);
-    *m = (adcgs_body_model){ .n = 0 };
+    *m = (adcgs_body_model){.n = 0};
 }
 
 void adcgs_frame_views_init(adcgs_frame_views *views, const adcgs_stereo_rig *rig, int frame)
 {
-    *views = (adcgs_frame_views){ .frame = frame };
+    *views = (adcgs_frame_views){.frame = frame};
     for (int c = 0; c < rig->n_cameras; c++)
         if (rig->camera[c].background && rig->camera[c].frame[frame])
             views->camera[views->n++] = &rig->camera[c];
@@ -70,18 +69,18 @@ void adcgs_frame_views_init(adcgs_frame_views *views, const adcgs_stereo_rig *ri
 
 int adcgs_faces(const adcgs_stereo_view *view, const double x[3], const double normal[3])
 {
-    const double to[3] = { view->centre[0] - x[0], view->centre[1] - x[1], view->centre[2] - x[2] };
+    const double to[3] = {view->centre[0] - x[0], view->centre[1] - x[1], view->centre[2] - x[2]};
     const double along = adcgs_v3_dot(to, normal);
     return along > 0 ? along * along > FACING * FACING * adcgs_v3_dot(to, to) : adcgs_v3_dot(normal, normal) < 0.5;
 }
 
-int adcgs_body_point_at(const adcgs_body_model *m, uint32_t i, const adcgs_rigid *at, const adcgs_frame_views *views,
-                        double x[3], double normal[3])
+int adcgs_body_point_at(const adcgs_body_model *m, uint32_t i, const adcgs_rigid *at, const adcgs_frame_views *views, double x[3],
+                        double normal[3])
 {
     const float *n = m->more[i].normal;
     int faces = 0;
     adcgs_rigid_apply(at, m->p[i].x, x);
-    adcgs_rigid_turn(at, (const double[]){ (double)n[0], (double)n[1], (double)n[2] }, normal);
+    adcgs_rigid_turn(at, (const double[]){(double)n[0], (double)n[1], (double)n[2]}, normal);
     for (int k = 0; k < views->n; k++)
         faces += adcgs_faces(&views->camera[k]->view, x, normal);
     return faces;
@@ -113,8 +112,8 @@ void adcgs_body_register(const adcgs_body_model *m, const adcgs_cloud *cloud, co
 {
     const double reach = how->reach * m->pixel, sharp = how->sharp * m->pixel;
     for (int round = 0; round < how->rounds; round++) {
-        adcgs_rigid_sums sums = { .weight = 0 };
-        adcgs_gain_sums gains = { .with = { { 0 } } };
+        adcgs_rigid_sums sums = {.weight = 0};
+        adcgs_gain_sums gains = {.with = {{0}}};
         for (uint32_t i = 0; i < m->n; i += how->stride) {
             double x[3], normal[3];
             float rgb[3];

@@ -51,7 +51,7 @@ typedef struct adcgs_placement {
 typedef struct adcgs_registration_stage {
     double reach, sharp; /**< pixels: maximum match distance; distance at which the fit is one half */
     int rounds;
-    uint32_t stride;     /**< of the body's points */
+    uint32_t stride; /**< of the body's points */
 } adcgs_registration_stage;
 
 /** Side of a normal in the rest pose. */

@@ -7,12 +7,12 @@
 
 #include <math.h>
 
-enum { ROUNDS = 30 };      /* of least squares */
-enum { TRIES = 400 };      /* poses from two correspondences */
+enum { ROUNDS = 30 }; /* of least squares */
+enum { TRIES = 400 }; /* poses from two correspondences */
 enum { SIGHTS_LEAST = 6 };
-#define SHARP 0.7          /* pixels: final error at which the fit is one half */
-#define NARROWER 0.8       /* factor of that error from one round to the next */
-#define ROUGHLY 0.06       /* share of the image width: tolerance of a pose from two correspondences, which ignores parallax */
+#define SHARP 0.7    /* pixels: final error at which the fit is one half */
+#define NARROWER 0.8 /* factor of that error from one round to the next */
+#define ROUGHLY 0.06 /* share of the image width: tolerance of a pose from two correspondences, which ignores parallax */
 #define DAMPING 1e-6
 
 static void to_camera(const adcgs_stereo_view *v, const double x[3], double p[3])
@@ -56,7 +56,7 @@ static void move(adcgs_stereo_view *v, const double turn[3], const double shift[
     memcpy(own.r, v->rotation, sizeof own.r);
     for (int a = 0; a < 3; a++)
         own.t[a] = -(own.r[3 * a] * v->centre[0] + own.r[3 * a + 1] * v->centre[1] + own.r[3 * a + 2] * v->centre[2]);
-    adcgs_rigid_about(turn, (const double[]){ 0, 0, 0 }, shift, &step);
+    adcgs_rigid_about(turn, (const double[]){0, 0, 0}, shift, &step);
     adcgs_rigid_then(&own, &step, &own);
     memcpy(v->rotation, own.r, sizeof own.r);
     for (int a = 0; a < 3; a++)
@@ -66,7 +66,7 @@ static void move(adcgs_stereo_view *v, const double turn[3], const double shift[
 /** Derivatives of a pixel coordinate by camera rotation and scene shift. axis: 0 or 1, the coordinate. */
 static void slope_of(const double p[3], int axis, double focal, double row[6])
 {
-    double by_place[3] = { 0, 0, -focal * p[axis] / (p[2] * p[2]) };
+    double by_place[3] = {0, 0, -focal * p[axis] / (p[2] * p[2])};
     by_place[axis] = focal / p[2];
     row[0] = p[1] * by_place[2] - p[2] * by_place[1];
     row[1] = p[2] * by_place[0] - p[0] * by_place[2];
@@ -77,7 +77,7 @@ static void slope_of(const double p[3], int axis, double focal, double row[6])
 /** One step; 0 if the system is singular. sharp: error in pixels at which the fit is one half. */
 static int step(adcgs_stereo_view *v, const adcgs_correspondences *s, double sharp)
 {
-    double a[36] = { 0 }, b[6] = { 0 }, p[3], off[2], row[6];
+    double a[36] = {0}, b[6] = {0}, p[3], off[2], row[6];
     for (int i = 0; i < s->n; i++) {
         if (!difference(v, &s->match[i], p, off))
             continue;
@@ -113,10 +113,10 @@ void adcgs_resect(adcgs_stereo_view *view, const adcgs_correspondences *matches,
 /** Rotates a camera about its centre so that two correspondences agree. */
 static void turn_to(adcgs_stereo_view *v, const adcgs_correspondence *two[2])
 {
-    adcgs_rigid_sums sums = { .weight = 0 };
+    adcgs_rigid_sums sums = {.weight = 0};
     adcgs_rigid turn;
     for (int i = 0; i < 2; i++) {
-        double world[3], own[3] = { (two[i]->at[0] - v->cx) / v->fx, (two[i]->at[1] - v->cy) / v->fy, 1 }, far = 0, length = 0;
+        double world[3], own[3] = {(two[i]->at[0] - v->cx) / v->fx, (two[i]->at[1] - v->cy) / v->fy, 1}, far = 0, length = 0;
         for (int a = 0; a < 3; a++) {
             world[a] = two[i]->x[a] - v->centre[a];
             far += world[a] * world[a];

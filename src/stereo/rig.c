@@ -12,17 +12,17 @@ enum {
     PIXELS_LEAST = 4096, /* pixels: minimum size of an image for matching */
     PIXELS_MOST = 28000  /* pixels: maximum size of a reduced image */
 };
-#define BACKGROUND_MAX_LEVELS 18 /* levels of 255: maximum difference of a pixel from its background */
+#define BACKGROUND_MAX_LEVELS 18  /* levels of 255: maximum difference of a pixel from its background */
 #define BACKGROUND_SHARE_MIN 0.55 /* minimum share of the frames in which a pixel must show its background */
-#define NEAREST 0.2           /* scene units: default minimum depth, from depths observed in such units */
-#define FARTHEST 8.0          /* scene units: default maximum depth, likewise */
+#define NEAREST 0.2               /* scene units: default minimum depth, from depths observed in such units */
+#define FARTHEST 8.0              /* scene units: default maximum depth, likewise */
 
 /** Camera and time of the scene's views. */
 typedef struct index {
     const adcgs_scene_view *views;
     uint32_t n, n_cameras, n_times;
     uint32_t *of, *order;
-    double *times; /* [n_times] ascending */
+    double *times;  /* [n_times] ascending */
     uint32_t *film; /* [n] the views in order of time, if one moving camera took them; otherwise NULL */
 } index;
 
@@ -38,7 +38,7 @@ static void index_clear(index *x)
 
 enum {
     MONOCULAR_FRAMES_MIN = 8, /* minimum number of images */
-    ALIKE_OF_4 = 3  /* of four images: minimum number with the viewing direction of the previous one */
+    ALIKE_OF_4 = 3            /* of four images: minimum number with the viewing direction of the previous one */
 };
 #define ALIKE 0.966 /* minimum cosine between such directions */
 
@@ -72,7 +72,7 @@ static adcgs_status find_film(index *x, adcgs_error *error)
     if (!all)
         return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < x->n; i++)
-        all[i] = (timed){ x->views[i].time, i };
+        all[i] = (timed){x->views[i].time, i};
     qsort(all, x->n, sizeof *all, earlier);
     adcgs_status status = ADCGS_OK;
     if (goes_on(x, all)) {
@@ -87,7 +87,7 @@ static adcgs_status find_film(index *x, adcgs_error *error)
 
 static adcgs_status index_init(index *x, const adcgs_scene *scene, adcgs_error *error)
 {
-    *x = (index){ .views = scene->views[ADCGS_SPLIT_TRAIN], .n = scene->n_views[ADCGS_SPLIT_TRAIN] };
+    *x = (index){.views = scene->views[ADCGS_SPLIT_TRAIN], .n = scene->n_views[ADCGS_SPLIT_TRAIN]};
     x->of = adcgs_alloc(NULL, x->n, sizeof *x->of, error);
     x->order = adcgs_alloc(NULL, x->n, sizeof *x->order, error);
     x->times = adcgs_alloc(NULL, x->n, sizeof *x->times, error);
@@ -167,11 +167,11 @@ void adcgs_stereo_rig_get_frame(const adcgs_stereo_camera *camera, int frame, fl
 /** Binomial filter over 5 pixels of a line of n pixels, `step` apart. Unknown pixels have no weight. */
 static void soften_line(uint8_t *line, int n, size_t step, uint8_t *copy)
 {
-    static const int weight[5] = { 1, 4, 6, 4, 1 };
+    static const int weight[5] = {1, 4, 6, 4, 1};
     for (int i = 0; i < n; i++)
         memcpy(copy + 4 * i, line + (size_t)i * step, 4);
     for (int i = 0; i < n; i++) {
-        int sum[3] = { 0, 0, 0 }, all = 0;
+        int sum[3] = {0, 0, 0}, all = 0;
         for (int k = ADCGS_MAX(i - 2, 0); k <= ADCGS_MIN(i + 2, n - 1); k++) {
             const int w = copy[4 * k + 3] ? weight[k - i + 2] : 0;
             all += w;
@@ -308,8 +308,8 @@ static uint32_t frames_of(const adcgs_stereo_options *o)
 static adcgs_status load_film(adcgs_stereo_rig *rig, const adcgs_scene *scene, const index *x, const adcgs_stereo_options *o,
                               adcgs_error *error)
 {
-    rig->n_cameras = rig->n_frames = (int)ADCGS_MIN(ADCGS_MIN(x->n, ADCGS_STEREO_CAMERAS),
-                                                    ADCGS_MAX(frames_of(o), MONOCULAR_FRAMES_MIN));
+    rig->n_cameras = rig->n_frames =
+        (int)ADCGS_MIN(ADCGS_MIN(x->n, ADCGS_STEREO_CAMERAS), ADCGS_MAX(frames_of(o), MONOCULAR_FRAMES_MIN));
     rig->monocular = 1;
     for (int c = 0; c < rig->n_cameras; c++) {
         const uint32_t view = x->film[(uint64_t)c * (x->n - 1) / (uint64_t)(rig->n_cameras - 1)];

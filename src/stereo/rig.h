@@ -20,16 +20,16 @@ typedef struct adcgs_stereo_view {
     double rotation[9], centre[3]; /**< rows: the camera's axes; scene units */
     double fx, fy, cx, cy;
     int w, h;
-    const float *pixels; /**< [h][w][4] red, green, blue, and 1 where the pixel is known */
+    const float *pixels;  /**< [h][w][4] red, green, blue, and 1 where the pixel is known */
     const uint8_t *moves; /**< [h][w] 1: moving content; NULL: unknown */
     const uint8_t *still; /**< [h][w] 1: the 3x3 window shows only background; known if `moves` is */
 } adcgs_stereo_view;
 
 typedef struct adcgs_stereo_camera {
-    adcgs_stereo_view view;                /**< pixels: the background */
-    uint32_t first;                     /**< index of its first training view */
-    float *background;                  /**< [h][w][4] background, the median over frames; owned */
-    uint8_t *unstable;                  /**< [h][w] 1: no stable background */
+    adcgs_stereo_view view;                    /**< pixels: the background */
+    uint32_t first;                            /**< index of its first training view */
+    float *background;                         /**< [h][w][4] background, the median over frames; owned */
+    uint8_t *unstable;                         /**< [h][w] 1: no stable background */
     uint8_t *frame[ADCGS_MATCHING_FRAMES_MAX]; /**< [h][w][4] image of each frame; NULL: none */
 } adcgs_stereo_camera;
 
@@ -39,7 +39,7 @@ typedef struct adcgs_stereo_rig {
     int monocular; /**< 1: a single moving camera; camera m has an image of frame m only */
     adcgs_stereo_camera camera[ADCGS_STEREO_CAMERAS];
     float frame_time[ADCGS_MATCHING_FRAMES_MAX]; /**< t of each frame, ascending */
-    double nearest, farthest;        /**< range of depths to search, scene units */
+    double nearest, farthest;                    /**< range of depths to search, scene units */
 } adcgs_stereo_rig;
 
 adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *scene, const adcgs_stereo_options *options,
@@ -108,7 +108,7 @@ static inline int adcgs_stereo_rig_project(const adcgs_stereo_view *v, const dou
 /** The point at a given depth on the ray through the centre of a pixel. */
 static inline void adcgs_stereo_rig_lift(const adcgs_stereo_view *v, int px, int py, double depth, double x[3])
 {
-    const double p[3] = { (px + 0.5 - v->cx) / v->fx * depth, (py + 0.5 - v->cy) / v->fy * depth, depth };
+    const double p[3] = {(px + 0.5 - v->cx) / v->fx * depth, (py + 0.5 - v->cy) / v->fy * depth, depth};
     for (int a = 0; a < 3; a++)
         x[a] = v->centre[a] + v->rotation[a] * p[0] + v->rotation[3 + a] * p[1] + v->rotation[6 + a] * p[2];
 }

@@ -9,15 +9,15 @@
 
 enum { SWEEPS = 12 };
 
-const adcgs_rigid adcgs_rigid_none = { .r = { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
+const adcgs_rigid adcgs_rigid_none = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
 void adcgs_rigid_then(const adcgs_rigid *first, const adcgs_rigid *second, adcgs_rigid *out)
 {
     adcgs_rigid m;
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
-            m.r[3 * a + b] = second->r[3 * a] * first->r[b] + second->r[3 * a + 1] * first->r[3 + b] +
-                             second->r[3 * a + 2] * first->r[6 + b];
+            m.r[3 * a + b] =
+                second->r[3 * a] * first->r[b] + second->r[3 * a + 1] * first->r[3 + b] + second->r[3 * a + 2] * first->r[6 + b];
     adcgs_rigid_apply(second, first->t, m.t);
     *out = m;
 }
@@ -36,7 +36,7 @@ void adcgs_rigid_inverse(const adcgs_rigid *m, adcgs_rigid *out)
 /** Sets the rotation from a quaternion. */
 static void set_rotation(adcgs_rigid *m, const double q[4])
 {
-    double pose[12] = { 0 };
+    double pose[12] = {0};
     adcgs_rotation_to_pose(q, pose);
     for (int a = 0; a < 3; a++)
         memcpy(m->r + 3 * a, pose + 4 * a, 3 * sizeof *pose);
@@ -56,7 +56,7 @@ void adcgs_rigid_about(const double turn[3], const double centre[3], const doubl
     double q[4];
     adcgs_rotation_exp(turn, 0.5, q); /* the function takes half the angle */
     set_rotation(out, q);
-    set_shift(out, centre, (const double[]){ centre[0] + shift[0], centre[1] + shift[1], centre[2] + shift[2] });
+    set_shift(out, centre, (const double[]){centre[0] + shift[0], centre[1] + shift[1], centre[2] + shift[2]});
 }
 
 void adcgs_symmetric_eigen(double *a, double *v, int n)
@@ -113,10 +113,9 @@ void adcgs_rigid_fit(const adcgs_rigid_sums *sums, adcgs_rigid *out)
     }
     for (int i = 0; i < 9; i++)
         s[i] = sums->product[i] - sums->weight * from[i / 3] * to[i % 3];
-    double n[16] = { s[0] + s[4] + s[8], s[5] - s[7], s[6] - s[2], s[1] - s[3],
-                     s[5] - s[7], s[0] - s[4] - s[8], s[1] + s[3], s[6] + s[2],
-                     s[6] - s[2], s[1] + s[3], s[4] - s[0] - s[8], s[5] + s[7],
-                     s[1] - s[3], s[6] + s[2], s[5] + s[7], s[8] - s[0] - s[4] };
+    double n[16] = {s[0] + s[4] + s[8], s[5] - s[7], s[6] - s[2], s[1] - s[3],       s[5] - s[7],        s[0] - s[4] - s[8],
+                    s[1] + s[3],        s[6] + s[2], s[6] - s[2], s[1] + s[3],       s[4] - s[0] - s[8], s[5] + s[7],
+                    s[1] - s[3],        s[6] + s[2], s[5] + s[7], s[8] - s[0] - s[4]};
     adcgs_symmetric_eigen(n, v, 4);
     int best = 0;
     for (int i = 1; i < 4; i++)

@@ -11,9 +11,9 @@ enum {
     JUMP_MORE = 60,  /* additional cost without contrast */
     PATHS = 4        /* paths from one side */
 };
-#define EDGE 20.0f       /* per unit of contrast: depth edges often coincide with image edges */
-#define ALIKE 0.45f      /* maximum cost of a strong match, relative to the full cost */
-#define CLEAR 0.03f      /* minimum lead of the best plane over the next best */
+#define EDGE 20.0f  /* per unit of contrast: depth edges often coincide with image edges */
+#define ALIKE 0.45f /* maximum cost of a strong match, relative to the full cost */
+#define CLEAR 0.03f /* minimum lead of the best plane over the next best */
 
 /** Padding before and after the planes of a path, so that no plane is a special case. */
 enum { BESIDE = 1, BEYOND = 16000 };
@@ -55,7 +55,7 @@ static int16_t jump_between(const adcgs_sweep *s, int x, int y, int px, int py)
 /** Updates one pixel in direction `sign`: from the previous pixel, and from three in the previous row. */
 static void walk(paths *p, int x, int y, int sign)
 {
-    static const int step[PATHS][2] = { { 1, 0 }, { 1, 1 }, { 0, 1 }, { -1, 1 } };
+    static const int step[PATHS][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}};
     const int planes = p->s->planes;
     const size_t at = ((size_t)y * (size_t)p->s->w + (size_t)x) * (size_t)planes, wide = (size_t)planes + 2 * BESIDE;
     for (int k = 0; k < PATHS; k++) {
@@ -69,8 +69,8 @@ static void walk(paths *p, int x, int y, int sign)
             }
             p->least[0][k][x] = best;
         } else {
-            p->least[0][k][x] = reach(to, p->row[before][k] + (size_t)px * wide, p->cost + at, planes,
-                                      p->least[before][k][px], jump_between(p->s, x, y, px, py));
+            p->least[0][k][x] = reach(to, p->row[before][k] + (size_t)px * wide, p->cost + at, planes, p->least[before][k][px],
+                                      jump_between(p->s, x, y, px, py));
         }
         for (int d = 0; d < planes; d++)
             p->sum[at + (size_t)d] = (int16_t)(p->sum[at + (size_t)d] + to[d]);
@@ -90,7 +90,7 @@ static void swap_rows(paths *p)
 
 static adcgs_status smooth(const adcgs_sweep *s, const int16_t *cost, int16_t *sum, adcgs_error *error)
 {
-    paths p = { .s = s, .cost = cost, .sum = sum };
+    paths p = {.s = s, .cost = cost, .sum = sum};
     const size_t row = (size_t)s->w * ((size_t)s->planes + 2 * BESIDE), all = 2 * PATHS * (row + (size_t)s->w);
     int16_t *memory = adcgs_alloc(NULL, all, sizeof *memory, error), *next = memory;
     if (!memory)
@@ -133,14 +133,15 @@ static void decide(adcgs_depths *o, const adcgs_sweep *s, const int16_t *cost, c
     const double off = inner ? lowest(sum[best - 1], sum[best], sum[best + 1]) : 0;
     const float lead = (float)(next - sum[best]) / (2 * PATHS * ADCGS_SWEEP_COST);
     o->inverse[pixel] = (float)(s->first + (best + off) * s->step);
-    o->quality[pixel] = !inner ? ADCGS_DEPTH_NONE
-        : cost[best] <= ALIKE * ADCGS_SWEEP_COST && lead >= CLEAR ? ADCGS_DEPTH_STRONG : ADCGS_DEPTH_WEAK;
+    o->quality[pixel] = !inner                                                    ? ADCGS_DEPTH_NONE
+                        : cost[best] <= ALIKE * ADCGS_SWEEP_COST && lead >= CLEAR ? ADCGS_DEPTH_STRONG
+                                                                                  : ADCGS_DEPTH_WEAK;
 }
 
 adcgs_status adcgs_depths_find(adcgs_depths *o, const adcgs_sweep *s, adcgs_error *error)
 {
     const size_t n = (size_t)s->w * (size_t)s->h, planes = (size_t)s->planes;
-    *o = (adcgs_depths){ .view = s->view, .x = s->x, .y = s->y, .w = s->w, .h = s->h, .step = s->step };
+    *o = (adcgs_depths){.view = s->view, .x = s->x, .y = s->y, .w = s->w, .h = s->h, .step = s->step};
     o->inverse = adcgs_alloc(NULL, n, sizeof *o->inverse, error);
     o->quality = adcgs_alloc(NULL, n, 1, error);
     int16_t *cost = adcgs_alloc(NULL, n * planes, sizeof *cost, error), *sum = adcgs_alloc(NULL, n * planes, sizeof *sum, error);

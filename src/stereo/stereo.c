@@ -23,8 +23,8 @@ enum {
     MOST = 5, /* differing pixels of a 3x3 window that make its centre moving */
     LINE = 3  /* the same if the centre itself differs */
 };
-#define AXES_ALIKE 0.6  /* cosine: minimum alignment of the axes of matched views */
-#define APART 0.005     /* scene units: minimum distance between views, for depth */
+#define AXES_ALIKE 0.6 /* cosine: minimum alignment of the axes of matched views */
+#define APART 0.005    /* scene units: minimum distance between views, for depth */
 
 struct adcgs_stereo_maps {
     int n;
@@ -67,16 +67,16 @@ static void choose_sources(adcgs_sweep *s, const adcgs_stereo_view *views, int n
 typedef struct match {
     int n;
     adcgs_stereo_view *views;
-    const int (*parts)[4];     /* [n] x, y, w, h; w 0: none */
+    const int (*parts)[4]; /* [n] x, y, w, h; w 0: none */
     double nearest, farthest;
-    adcgs_depths *depths;      /* [n] */
+    adcgs_depths *depths; /* [n] */
     adcgs_error error[ADCGS_STEREO_CAMERAS];
 } match;
 
 static void match_one(void *arg, int i, int thread)
 {
     match *m = arg;
-    adcgs_sweep s = { .x = m->parts[i][0], .y = m->parts[i][1], .w = m->parts[i][2], .h = m->parts[i][3] };
+    adcgs_sweep s = {.x = m->parts[i][0], .y = m->parts[i][1], .w = m->parts[i][2], .h = m->parts[i][3]};
     (void)thread;
     m->depths[i].view = &m->views[i];
     choose_sources(&s, m->views, m->n, i);
@@ -99,7 +99,7 @@ static adcgs_status find_still(adcgs_stereo *out, adcgs_stereo_list *list, const
 {
     adcgs_stereo_maps *maps = out->maps;
     const uint8_t *wanted[ADCGS_STEREO_CAMERAS];
-    uint8_t *still[ADCGS_STEREO_CAMERAS] = { NULL };
+    uint8_t *still[ADCGS_STEREO_CAMERAS] = {NULL};
     int parts[ADCGS_STEREO_CAMERAS][4];
     adcgs_status status = ADCGS_OK;
     for (int c = 0; c < rig->n_cameras && status == ADCGS_OK; c++) {
@@ -110,15 +110,19 @@ static adcgs_status find_still(adcgs_stereo *out, adcgs_stereo_list *list, const
         const int i = maps->n++;
         maps->view[i] = camera->view;
         maps->unstable[i] = camera->unstable;
-        memcpy(parts[i], (const int[]){ 0, 0, camera->view.w, camera->view.h }, sizeof parts[i]);
+        memcpy(parts[i], (const int[]){0, 0, camera->view.w, camera->view.h}, sizeof parts[i]);
         wanted[i] = still[i] = adcgs_alloc(NULL, plane, 1, error);
         status = still[i] ? ADCGS_OK : adcgs_alloc_status(error);
         for (size_t k = 0; still[i] && k < plane; k++)
             still[i][k] = !camera->unstable[k];
     }
-    match m = { .n = maps->n, .views = maps->view, .parts = (const int(*)[4])parts, .nearest = rig->nearest,
-                .farthest = rig->farthest, .depths = maps->depths };
-    const adcgs_stereo_point like = { .t = 0.5f };
+    match m = {.n = maps->n,
+               .views = maps->view,
+               .parts = (const int(*)[4])parts,
+               .nearest = rig->nearest,
+               .farthest = rig->farthest,
+               .depths = maps->depths};
+    const adcgs_stereo_point like = {.t = 0.5f};
     if (status == ADCGS_OK)
         status = match_all(&m, pool, error);
     if (status == ADCGS_OK)
@@ -160,7 +164,7 @@ static void mark(const adcgs_stereo_camera *c, int frame, uint8_t *off, uint8_t 
     top = ADCGS_MAX(top - MARGIN, 0);
     right = ADCGS_MIN(right + MARGIN, w - 1);
     bottom = ADCGS_MIN(bottom + MARGIN, h - 1);
-    memcpy(part, (const int[]){ left, top, n < MOVING_LEAST ? 0 : right - left + 1, bottom - top + 1 }, 4 * sizeof *part);
+    memcpy(part, (const int[]){left, top, n < MOVING_LEAST ? 0 : right - left + 1, bottom - top + 1}, 4 * sizeof *part);
 }
 
 /** Working memory of one frame. */
@@ -211,7 +215,7 @@ static void frame_free(frame_layer *o)
 /** Tests if two cameras have a background surface at a position, and if it is visible most of the time. */
 static adcgs_stereo_in_place in_place(const adcgs_stereo_maps *maps, const double x[3])
 {
-    double there[3], at[2] = { 0, 0 }, depth;
+    double there[3], at[2] = {0, 0}, depth;
     int same = 0, still = 0;
     for (int k = 0; k < maps->n && still < 2; k++) {
         const adcgs_stereo_view *v = &maps->view[k];
@@ -227,7 +231,7 @@ static adcgs_stereo_in_place in_place(const adcgs_stereo_maps *maps, const doubl
 /** True if no view has a source for matching. */
 static int all_stand_apart(const frame_layer *o)
 {
-    adcgs_sweep s = { .n_sources = 0 };
+    adcgs_sweep s = {.n_sources = 0};
     for (int i = 0; i < o->n && !s.n_sources; i++)
         choose_sources(&s, o->view, o->n, i);
     return !s.n_sources;
@@ -241,9 +245,13 @@ static adcgs_status match_moment(adcgs_stereo_list *found, const adcgs_stereo_ri
     if (!o)
         return adcgs_alloc_status(error);
     adcgs_status status = read_frame(o, rig, m, error);
-    match job = { .n = o->n, .views = o->view, .parts = (const int(*)[4])o->part, .nearest = rig->nearest,
-                  .farthest = rig->farthest, .depths = o->depths };
-    const adcgs_stereo_point like = { .t = rig->frame_time[m], .moves = 1 };
+    match job = {.n = o->n,
+                 .views = o->view,
+                 .parts = (const int(*)[4])o->part,
+                 .nearest = rig->nearest,
+                 .farthest = rig->farthest,
+                 .depths = o->depths};
+    const adcgs_stereo_point like = {.t = rig->frame_time[m], .moves = 1};
     if (status == ADCGS_OK)
         status = match_all(&job, pool, error);
     if (status == ADCGS_OK)
@@ -257,9 +265,9 @@ static adcgs_status match_moment(adcgs_stereo_list *found, const adcgs_stereo_ri
 static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_stereo_maps *maps, int m,
                                 uint32_t most, adcgs_pool *pool, adcgs_error *error)
 {
-    adcgs_stereo_list found = { 0, 0, NULL };
+    adcgs_stereo_list found = {0, 0, NULL};
     adcgs_status status = rig->monocular ? adcgs_monocular_find_moving(&found, rig, maps->depths, m, error)
-                                    : match_moment(&found, rig, m, pool, error);
+                                         : match_moment(&found, rig, m, pool, error);
     for (size_t i = 0; i < found.n; i++)
         found.point[i].in_place = (uint8_t)in_place(maps, found.point[i].x);
     if (status == ADCGS_OK)
@@ -275,7 +283,7 @@ static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig 
 static adcgs_status find(adcgs_stereo *out, adcgs_stereo_rig *rig, const adcgs_stereo_options *options, adcgs_pool *pool,
                          adcgs_error *error)
 {
-    adcgs_stereo_list still = { 0, 0, NULL }, moving = { 0, 0, NULL };
+    adcgs_stereo_list still = {0, 0, NULL}, moving = {0, 0, NULL};
     adcgs_status status = find_still(out, &still, rig, pool, error);
     if (status == ADCGS_OK && options->judges)
         status = adcgs_stereo_find_pose_outliers(out, rig, out->maps->depths, pool, error);
@@ -298,11 +306,11 @@ static adcgs_status find(adcgs_stereo *out, adcgs_stereo_rig *rig, const adcgs_s
     return status == ADCGS_OK && options->bodies ? adcgs_stereo_find_bodies(out, rig, options->bodies, pool, error) : status;
 }
 
-adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, const adcgs_stereo_options *options,
-                               adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, const adcgs_stereo_options *options, adcgs_pool *pool,
+                               adcgs_error *error)
 {
     adcgs_stereo_rig *rig = adcgs_alloc(NULL, 1, sizeof *rig, error);
-    *out = (adcgs_stereo){ .maps = adcgs_alloc(NULL, 1, sizeof *out->maps, error) };
+    *out = (adcgs_stereo){.maps = adcgs_alloc(NULL, 1, sizeof *out->maps, error)};
     adcgs_status status = rig && out->maps ? adcgs_stereo_rig_init(rig, scene, options, error) : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         out->frame_time = adcgs_alloc(NULL, (size_t)rig->n_frames, sizeof *out->frame_time, error);

@@ -26,7 +26,7 @@ typedef enum adcgs_stereo_in_place {
 } adcgs_stereo_in_place;
 
 typedef struct adcgs_stereo_point {
-    double x[3];       /**< scene units */
+    double x[3]; /**< scene units */
     float rgb[3];
     float t;           /**< time, 0..1; 0.5 for static points */
     float velocity[3]; /**< scene units per unit of t; 0 if unknown */
@@ -35,8 +35,8 @@ typedef struct adcgs_stereo_point {
     float life, shift; /**< for the anchor: initial half lifetime, and offset of its middle from t */
     float detail;      /**< contrast of the image around it, 0..1 */
     uint8_t moves;
-    uint8_t in_place;  /**< adcgs_stereo_in_place */
-    uint8_t body;      /**< index of its rigid body, from 1; 0: none */
+    uint8_t in_place; /**< adcgs_stereo_in_place */
+    uint8_t body;     /**< index of its rigid body, from 1; 0: none */
 } adcgs_stereo_point;
 
 /** Pose of a rigid body in a frame: a rest position x moves to R(q) (x - pivot) + pivot + way. q: w, x, y, z, of length 1. */
@@ -90,8 +90,8 @@ typedef struct adcgs_stereo {
     adcgs_stereo_point *moving; /**< ascending in t */
     int monocular;              /**< 1: a single moving camera, so each frame has one view */
     uint32_t n_frames;
-    float *frame_time;          /**< [n_frames] t of the matched frames, ascending */
-    uint32_t n_bodies;          /**< at most ADCGS_BODIES_MAX, the largest first */
+    float *frame_time; /**< [n_frames] t of the matched frames, ascending */
+    uint32_t n_bodies; /**< at most ADCGS_BODIES_MAX, the largest first */
     adcgs_stereo_body *body;
     adcgs_stereo_pose_error poses; /**< pose errors and outliers, if options.judges */
     int n_outliers;
@@ -106,8 +106,8 @@ typedef struct adcgs_stereo {
 adcgs_status adcgs_stereo_applies(const adcgs_scene *scene, int *applies, adcgs_error *error);
 
 /** Matches the scene. Both lists may be empty. */
-adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, const adcgs_stereo_options *options,
-                               adcgs_pool *pool, adcgs_error *error);
+adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, const adcgs_stereo_options *options, adcgs_pool *pool,
+                               adcgs_error *error);
 void adcgs_stereo_clear(adcgs_stereo *stereo);
 
 /** Time between adjacent frames, 1: whole duration. */

@@ -9,23 +9,23 @@
 #include <stdlib.h>
 
 enum {
-    FEW = 120,           /* points of a body for trying initial poses */
-    MANY = 700,          /* points of a body for refining a pose */
-    BEST = 6,            /* initial poses that are refined */
-    LOST_MOST = 4        /* maximum number of frames in a row without a match */
+    FEW = 120,    /* points of a body for trying initial poses */
+    MANY = 700,   /* points of a body for refining a pose */
+    BEST = 6,     /* initial poses that are refined */
+    LOST_MOST = 4 /* maximum number of frames in a row without a match */
 };
-#define SHARE_GOOD 0.25  /* minimum share of matching points */
-#define LIGHT_GOOD 0.45  /* minimum agreement of the images */
-#define SHARE_SURE 0.35  /* share and agreement from which no other initial pose is tried */
+#define SHARE_GOOD 0.25 /* minimum share of matching points */
+#define LIGHT_GOOD 0.45 /* minimum agreement of the images */
+#define SHARE_SURE 0.35 /* share and agreement from which no other initial pose is tried */
 #define LIGHT_SURE 0.52
-#define ABOUT 0.97       /* relative score that counts as equally good */
-#define APART 3.0        /* pixels: minimum distance between the positions about which rotations are tried */
-#define TURN_STEP 0.26   /* radians between rotations */
+#define ABOUT 0.97     /* relative score that counts as equally good */
+#define APART 3.0      /* pixels: minimum distance between the positions about which rotations are tried */
+#define TURN_STEP 0.26 /* radians between rotations */
 enum { TURNS = 4, STARTS = 3 + 2 * 13 * 2 * TURNS }; /* steps to each side; 2 positions x 13 axes */
 
-static const adcgs_registration_stage lay_far = { .reach = 14, .sharp = 5, .rounds = 6 };
-static const adcgs_registration_stage lay_near = { .reach = 5, .sharp = 2.5, .rounds = 4 };
-static const adcgs_registration_stage lay_close = { .reach = 3, .sharp = 1.5, .rounds = 5 };
+static const adcgs_registration_stage lay_far = {.reach = 14, .sharp = 5, .rounds = 6};
+static const adcgs_registration_stage lay_near = {.reach = 5, .sharp = 2.5, .rounds = 4};
+static const adcgs_registration_stage lay_close = {.reach = 3, .sharp = 1.5, .rounds = 5};
 
 static uint32_t stride_for(const adcgs_body_model *m, uint32_t wanted)
 {
@@ -120,14 +120,14 @@ static void add_turns(search *s, const adcgs_placement *from, const adcgs_rigid 
     adcgs_rigid_apply(base, rest, centre);
     for (int k = 14; k < 27; k++) /* one half of the 26 corners, edges and faces of a cube */
         for (int step = -TURNS; step <= TURNS; step++) {
-            const double axis[3] = { k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1 };
+            const double axis[3] = {k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
             const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
             const double angle = step * TURN_STEP / length;
             adcgs_rigid at;
             if (!step)
                 continue;
-            adcgs_rigid_about((const double[]){ angle * axis[0], angle * axis[1], angle * axis[2] }, centre,
-                              (const double[]){ 0, 0, 0 }, &at);
+            adcgs_rigid_about((const double[]){angle * axis[0], angle * axis[1], angle * axis[2]}, centre,
+                              (const double[]){0, 0, 0}, &at);
             adcgs_rigid_then(base, &at, &at);
             add_start(s, from, &at);
         }
@@ -216,7 +216,7 @@ void adcgs_track_extrapolate(const adcgs_track *t, const adcgs_layers *l, int fr
 static void drift(const adcgs_track *t, const adcgs_layers *l, int frame, int known, adcgs_rigid *out)
 {
     const double span = (double)(l->rig->frame_time[frame] - l->rig->frame_time[known]);
-    double sum[3] = { 0, 0, 0 }, n = 0;
+    double sum[3] = {0, 0, 0}, n = 0;
     for (uint32_t i = 0; i < t->model.n; i++) {
         double x[3], normal[3];
         uint32_t j = 0;
@@ -264,7 +264,7 @@ static void find_at(adcgs_track *t, const adcgs_layers *l, int frame, int turns,
 
 adcgs_status adcgs_track_run(adcgs_track *t, const adcgs_layers *l, int start, adcgs_pool *pool, adcgs_error *error)
 {
-    search s = { .t = t, .l = l, .pool = pool, .start = adcgs_alloc(NULL, STARTS, sizeof *s.start, error) };
+    search s = {.t = t, .l = l, .pool = pool, .start = adcgs_alloc(NULL, STARTS, sizeof *s.start, error)};
     adcgs_status status = s.start ? ADCGS_OK : adcgs_alloc_status(error);
     t->place[start].at = adcgs_rigid_none;
     t->known[start] = 1;
@@ -290,7 +290,7 @@ adcgs_status adcgs_track_run(adcgs_track *t, const adcgs_layers *l, int start, a
 /** Compares the current pose with the one that continues the motion, and prefers the latter if the images agree about as well. */
 static void look_again(adcgs_track *t, const adcgs_layers *l, int frame, int way)
 {
-    const int known[2] = { frame - way, frame - 2 * way };
+    const int known[2] = {frame - way, frame - 2 * way};
     adcgs_placement on, *now = &t->place[frame];
     if (known[1] < 0 || known[1] >= l->n || !t->known[known[0]] || !t->known[known[1]] || !l->all[frame].n)
         return;
@@ -332,6 +332,6 @@ static void refine_one(void *arg, int frame, int thread)
 
 void adcgs_track_refine(adcgs_track *t, const adcgs_layers *l, adcgs_pool *pool)
 {
-    again a = { t, l };
+    again a = {t, l};
     adcgs_pool_run(pool, refine_one, &a, l->n);
 }

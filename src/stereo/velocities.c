@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 enum { ROUNDS = 6, NEIGHBOURS = 8 };
-#define COLOUR 0.5  /* scene units per unit of colour difference */
-#define REACH 0.25  /* scene units, including the colour term: maximum distance of a match */
+#define COLOUR 0.5 /* scene units per unit of colour difference */
+#define REACH 0.25 /* scene units, including the colour term: maximum distance of a match */
 
 /** A point in a sorted list. */
 typedef struct place {
@@ -64,7 +64,7 @@ static walk walk_from(const layer *l, double x)
         else
             high = middle;
     }
-    return (walk){ l, x, low, low };
+    return (walk){l, x, low, low};
 }
 
 /** The next point along x, or NULL if none is nearer than sqrt(least). */
@@ -86,7 +86,7 @@ static const place *walk_on(walk *w, double least)
 /** Nearest point of a layer to a displaced point. *found: a candidate if less than to->n. */
 static int nearest(const layer *to, const adcgs_stereo_point *p, const double move[3], uint32_t *found)
 {
-    const double x[3] = { p->x[0] + move[0], p->x[1] + move[1], p->x[2] + move[2] };
+    const double x[3] = {p->x[0] + move[0], p->x[1] + move[1], p->x[2] + move[2]};
     double least = REACH * REACH;
     int any = 0;
     if (*found < to->n) { /* the candidate's distance prunes most others */
@@ -135,8 +135,8 @@ static void find_neighbours(const layer *l, uint32_t (*near)[NEIGHBOURS])
  * Displacements of one layer's points onto another layer, iterated: nearest match of each point, then the mean over its
  * neighbours.
  */
-static void lay(const layer *from, const layer *to, double (*move)[3], double (*raw)[3], uint8_t *known,
-                uint32_t *match, uint32_t (*near)[NEIGHBOURS])
+static void lay(const layer *from, const layer *to, double (*move)[3], double (*raw)[3], uint8_t *known, uint32_t *match,
+                uint32_t (*near)[NEIGHBOURS])
 {
     memset(move, 0, from->n * sizeof *move);
     memset(match, 0xff, from->n * sizeof *match);
@@ -147,7 +147,7 @@ static void lay(const layer *from, const layer *to, double (*move)[3], double (*
                 raw[i][a] = known[i] ? to->p[match[i]].x[a] - from->p[i].x[a] : 0;
         }
         for (uint32_t i = 0; i < from->n; i++) {
-            double sum[3] = { 0, 0, 0 };
+            double sum[3] = {0, 0, 0};
             int n = 0;
             for (int k = 0; k < NEIGHBOURS; k++) {
                 const uint32_t j = near[i][k];
@@ -183,7 +183,7 @@ static void follow_layer(layer *l, const layer *before, const layer *after, cons
 {
     memset(s->times, 0, l->n);
     find_neighbours(l, s->near);
-    const layer *const others[] = { before, after };
+    const layer *const others[] = {before, after};
     for (int k = 0; k < 2; k++)
         if (others[k] && others[k]->n) {
             lay(l, others[k], s->move, s->raw, s->known, s->match, s->near);
@@ -200,19 +200,22 @@ static layer layer_at(adcgs_stereo_point *points, place *sorted, uint32_t n, uin
     uint32_t end = begin;
     while (end < n && points[end].t <= points[begin].t)
         end++;
-    layer l = { points + begin, sorted + begin, end - begin };
+    layer l = {points + begin, sorted + begin, end - begin};
     sort_layer(&l);
     return l;
 }
 
 adcgs_status adcgs_stereo_find_velocities(adcgs_stereo_point *points, uint32_t n, adcgs_error *error)
 {
-    scratch s = { adcgs_alloc(NULL, n, sizeof *s.move, error),  adcgs_alloc(NULL, n, sizeof *s.raw, error),
-                  adcgs_alloc(NULL, n, 1, error),               adcgs_alloc(NULL, n, 1, error),
-                  adcgs_alloc(NULL, n, sizeof *s.match, error), adcgs_alloc(NULL, n, sizeof *s.near, error),
-                  adcgs_alloc(NULL, n, sizeof *s.sorted, error) };
+    scratch s = {adcgs_alloc(NULL, n, sizeof *s.move, error),
+                 adcgs_alloc(NULL, n, sizeof *s.raw, error),
+                 adcgs_alloc(NULL, n, 1, error),
+                 adcgs_alloc(NULL, n, 1, error),
+                 adcgs_alloc(NULL, n, sizeof *s.match, error),
+                 adcgs_alloc(NULL, n, sizeof *s.near, error),
+                 adcgs_alloc(NULL, n, sizeof *s.sorted, error)};
     const int good = s.move && s.raw && s.known && s.times && s.match && s.near && s.sorted;
-    layer before = { .n = 0 }, here = { .n = 0 };
+    layer before = {.n = 0}, here = {.n = 0};
     if (good && n)
         here = layer_at(points, s.sorted, n, 0);
     for (uint32_t end = here.n; here.n; end += here.n) {

@@ -55,11 +55,10 @@ static adcgs_status read_point(const adcgs_json_place *at, adcgs_sweep_row *row)
     const struct {
         const char *field;
         double min, max, *to;
-    } fields[] = {{"seeds", 1, ADCGS_SWEEP_LIST, &seeds},   {"lambda", 0, ANY_MAX, &row->lambda},
+    } fields[] = {{"seeds", 1, ADCGS_SWEEP_LIST, &seeds},     {"lambda", 0, ANY_MAX, &row->lambda},
                   {"dynamic_psnr", -DB_MAX, DB_MAX, &moving}, {"ssim", -1, 1, &ssim},
-                  {"network_share", 0, 1, &row->networks},  {"cpu_seconds", 0, ANY_MAX, &seconds},
-                  {"frames_per_second", 0, ANY_MAX, &speed},
-                  {"objective", 0, ANY_MAX, &objective}};
+                  {"network_share", 0, 1, &row->networks},    {"cpu_seconds", 0, ANY_MAX, &seconds},
+                  {"frames_per_second", 0, ANY_MAX, &speed},  {"objective", 0, ANY_MAX, &objective}};
     for (size_t i = 0; i < ADCGS_COUNTOF(fields); i++)
         ADCGS_TRY(read_number(at, fields[i].field, fields[i].min, fields[i].max, fields[i].to));
     if (seeds < 1)

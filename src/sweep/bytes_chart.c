@@ -59,9 +59,10 @@ adcgs_status adcgs_chart_bytes(const adcgs_chart *chart, const adcgs_sweep *swee
     ADCGS_TRY(adcgs_chart_open(&file, sweep, chart->name, error));
     for (int i = 0; i < plan->n_curves; i++)
         has[i] = print_block(file.file, plan, i);
-    fprintf(file.file, "set title '%s, by lambda'\nset ylabel 'bytes on disk, kB (1000 bytes)'\n"
-                       "set style data histograms\nset style histogram rowstacked title offset 0,-0.6\n"
-                       "set style fill solid noborder\nset boxwidth 0.7\nset yrange [0:*]\nset key invert\nset bmargin 9\n",
+    fprintf(file.file,
+            "set title '%s, by lambda'\nset ylabel 'bytes on disk, kB (1000 bytes)'\n"
+            "set style data histograms\nset style histogram rowstacked title offset 0,-0.6\n"
+            "set style fill solid noborder\nset boxwidth 0.7\nset yrange [0:*]\nset key invert\nset bmargin 9\n",
             chart->title);
     for (int i = 0; i < plan->n_curves; i++)
         if (has[i]) {

@@ -14,9 +14,9 @@
 /** A quantity of points, in the unit of an axis. */
 typedef struct quantity {
     const char *label;
-    size_t at;    /**< offset of its adcgs_spread in adcgs_sweep_row */
+    size_t at; /**< offset of its adcgs_spread in adcgs_sweep_row */
     double unit;
-    int is_gain;  /**< more is better */
+    int is_gain;   /**< more is better */
     int of_stream; /**< only streams have it */
 } quantity;
 
@@ -41,8 +41,8 @@ typedef struct point {
 typedef struct cloud {
     const quantity *x, *y;
     point *point;
-    int n, spreads; /**< some points are means over several seeds */
-    double least, most; /**< of x */
+    int n, spreads;                   /**< some points are means over several seeds */
+    double least, most;               /**< of x */
     int of_curve[ADCGS_SWEEP_CURVES]; /**< points per curve */
 } cloud;
 
@@ -135,21 +135,25 @@ static void print_block(FILE *script, const cloud *c, int curve)
 /** Prints the style of a curve: the codec's own curves are thick with dots, the yardsticks have shapes of their own. */
 static void print_plot(FILE *script, const adcgs_sweep_plan *plan, int index, int points, int spreads)
 {
-    static const char *const colours[] = {"#0060ad", "#008f5a", "#7a3db8", "#b03060", "#5a5a5a", "#d98000", "#c03000", "#806000",
-                                          "#207080", "#a040a0"};
+    static const char *const colours[] = {"#0060ad", "#008f5a", "#7a3db8", "#b03060", "#5a5a5a",
+                                          "#d98000", "#c03000", "#806000", "#207080", "#a040a0"};
     static const int shapes[] = {5, 9, 11, 13, 4, 8, 10, 12};
     const adcgs_sweep_curve *const curve = &plan->curve[index];
     const char *const bars = points > 1 ? "xyerrorlines" : "xyerrorbars", *const plain = points > 1 ? "linespoints" : "points";
     fprintf(script, "$curve%d using %s with %s linecolor rgb '%s' pointtype %d pointsize %s", index,
             spreads ? "1:4:2:3:5:6" : "1:4", spreads ? bars : plain, colours[(size_t)index % ADCGS_COUNTOF(colours)],
             curve->yardstick ? shapes[(size_t)index % ADCGS_COUNTOF(shapes)] : 7,
-            points == 1 ? "1.2" : curve->yardstick ? "0.9" : "0.7");
+            points == 1        ? "1.2"
+            : curve->yardstick ? "0.9"
+                               : "0.7");
     if (points > 1 || spreads)
         fprintf(script, " linewidth %s", curve->yardstick ? "1.2" : "2.2");
     fprintf(script, " title '%s'", curve->name);
     if (!curve->yardstick)
-        fprintf(script, ", \\\n  $curve%d using 1:4:($7 < 0 ? '' : sprintf('%%g', $7)) with labels offset 0,0.9 font ',9' "
-                        "notitle", index);
+        fprintf(script,
+                ", \\\n  $curve%d using 1:4:($7 < 0 ? '' : sprintf('%%g', $7)) with labels offset 0,0.9 font ',9' "
+                "notitle",
+                index);
 }
 
 static void print_curves(FILE *script, const adcgs_sweep_plan *plan, const cloud *c)

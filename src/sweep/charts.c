@@ -7,8 +7,10 @@ const adcgs_chart adcgs_charts[] = {
     {"rate-moving", "Quality of moving regions against bytes", adcgs_chart_curves, ADCGS_Q_BYTES, ADCGS_Q_MOVING},
     {"rate-ssim", "SSIM against bytes", adcgs_chart_curves, ADCGS_Q_BYTES, ADCGS_Q_SSIM},
     {"time", "Quality against CPU time of training", adcgs_chart_curves, ADCGS_Q_SECONDS, ADCGS_Q_PSNR},
-    {"time-moving", "Quality of moving regions against CPU time of "
-                    "training", adcgs_chart_curves, ADCGS_Q_SECONDS, ADCGS_Q_MOVING},
+    {"time-moving",
+     "Quality of moving regions against CPU time of "
+     "training",
+     adcgs_chart_curves, ADCGS_Q_SECONDS, ADCGS_Q_MOVING},
     {"speed", "Quality against playback speed", adcgs_chart_curves, ADCGS_Q_SPEED, ADCGS_Q_PSNR},
     {"bytes", "Distribution of the bytes", adcgs_chart_bytes, 0, 0},
     {"portions", "Quality of a part of the stream", adcgs_chart_portions, 0, 0},

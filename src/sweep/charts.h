@@ -16,7 +16,13 @@ adcgs_status adcgs_chart_draw(const adcgs_sweep *sweep, const char *name, int *d
 
 /** Quantities of the axes. */
 typedef enum adcgs_quantity {
-    ADCGS_Q_BYTES, ADCGS_Q_SECONDS, ADCGS_Q_SPEED, ADCGS_Q_PSNR, ADCGS_Q_MOVING, ADCGS_Q_SSIM, ADCGS_Q_COUNT
+    ADCGS_Q_BYTES,
+    ADCGS_Q_SECONDS,
+    ADCGS_Q_SPEED,
+    ADCGS_Q_PSNR,
+    ADCGS_Q_MOVING,
+    ADCGS_Q_SSIM,
+    ADCGS_Q_COUNT
 } adcgs_quantity;
 
 /** A chart of the page. */
@@ -26,7 +32,7 @@ typedef adcgs_status adcgs_chart_make(const adcgs_chart *chart, const adcgs_swee
 struct adcgs_chart {
     const char *name, *title; /**< of its files; of the chart */
     adcgs_chart_make *make;
-    adcgs_quantity x, y;      /**< of curves */
+    adcgs_quantity x, y; /**< of curves */
 };
 
 /** One quantity of points against another, for all curves and yardsticks. */

@@ -11,7 +11,7 @@
 
 #define LABELS_X 26 /* labels that fit below a panel, and next to it */
 #define LABELS_Y 16
-#define LABEL 20    /* characters of a label */
+#define LABEL 20 /* characters of a label */
 
 static double quality_of(const adcgs_sweep_view *view, int moving)
 {
@@ -194,8 +194,10 @@ static void print_panels(FILE *script, const adcgs_chart *chart, const adcgs_swe
             chart->title, shown->run->tag, is_map(shown) ? 0.83 : 0.97);
     for (int i = 0; i < n; i++) {
         const double at = top - i * (height + gap);
-        fprintf(script, "set tmargin at screen %g\nset bmargin at screen %g\n"
-                        "set key at screen 0.97, screen %g right horizontal\n", at, at - height, at + 0.05);
+        fprintf(script,
+                "set tmargin at screen %g\nset bmargin at screen %g\n"
+                "set key at screen 0.97, screen %g right horizontal\n",
+                at, at - height, at + 0.05);
         print_below(script, shown, i == n - 1);
         if (is_map(shown))
             print_map(script, shown, i);

@@ -27,15 +27,14 @@ adcgs_status adcgs_chart_open(adcgs_atomic *file, const adcgs_sweep *sweep, cons
  */
 adcgs_status adcgs_chart_draw(const adcgs_sweep *sweep, const char *name, int *drawn, adcgs_error *error)
 {
-    char command[] =
-        "cd \"$1\" || exit 1; command -v gnuplot >/dev/null || exit 127; "
-        "if gnuplot -e 'set terminal pdfcairo' >/dev/null 2>&1; then "
-        "TZ=UTC0 gnuplot -e 'pdf=1' \"$2.gp\" | LC_ALL=C "
-        "sed 's|/CreationDate (D:[0-9]\\{14\\}Z)|                                 |' >\"$2.pdf.part\" && "
-        "tail -c 7 \"$2.pdf.part\" | grep -q '%%EOF' && "
-        "mv -f \"$2.pdf.part\" \"$2.pdf\" || { rm -f \"$2.pdf.part\"; exit 1; }; fi; "
-        "gnuplot \"$2.gp\" | cat >\"$2.svg.part\" && grep -q '</svg>' \"$2.svg.part\" && "
-        "mv -f \"$2.svg.part\" \"$2.svg\" || { rm -f \"$2.svg.part\"; exit 1; }";
+    char command[] = "cd \"$1\" || exit 1; command -v gnuplot >/dev/null || exit 127; "
+                     "if gnuplot -e 'set terminal pdfcairo' >/dev/null 2>&1; then "
+                     "TZ=UTC0 gnuplot -e 'pdf=1' \"$2.gp\" | LC_ALL=C "
+                     "sed 's|/CreationDate (D:[0-9]\\{14\\}Z)|                                 |' >\"$2.pdf.part\" && "
+                     "tail -c 7 \"$2.pdf.part\" | grep -q '%%EOF' && "
+                     "mv -f \"$2.pdf.part\" \"$2.pdf\" || { rm -f \"$2.pdf.part\"; exit 1; }; fi; "
+                     "gnuplot \"$2.gp\" | cat >\"$2.svg.part\" && grep -q '</svg>' \"$2.svg.part\" && "
+                     "mv -f \"$2.svg.part\" \"$2.svg\" || { rm -f \"$2.svg.part\"; exit 1; }";
     char sh[] = "/bin/sh", c[] = "-c";
     char *const argv[] = {sh, c, command, sh, (char *)(uintptr_t)sweep->directory, (char *)(uintptr_t)name, NULL};
     char log[ADCGS_SWEEP_PATH];

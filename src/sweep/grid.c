@@ -12,7 +12,7 @@
 
 /* ---- Options of the encoder ---- */
 
-static const char *const cpu_names[] = { "auto", "scalar", "avx2", "avx512", NULL };
+static const char *const cpu_names[] = {"auto", "scalar", "avx2", "avx512", NULL};
 
 /** Numbers have a range, names a list. */
 static const struct {
@@ -21,12 +21,12 @@ static const struct {
     double min, max;
     int cannot_share; /* runs with it have no common beginning */
 } options[] = {
-    { "preset", adcgs_train_presets, 0, 0, 0 },
-    { "time-limit", NULL, 1, SECONDS_MAX, 1 },
-    { "segment", NULL, 1e-3, SECONDS_MAX, 1 },
-    { "key", NULL, 0, SECONDS_MAX, 1 },
-    { "threads", NULL, 1, 256, 0 },
-    { "cpu", cpu_names, 0, 0, 0 },
+    {"preset", adcgs_train_presets, 0, 0, 0},
+    {"time-limit", NULL, 1, SECONDS_MAX, 1},
+    {"segment", NULL, 1e-3, SECONDS_MAX, 1},
+    {"key", NULL, 0, SECONDS_MAX, 1},
+    {"threads", NULL, 1, 256, 0},
+    {"cpu", cpu_names, 0, 0, 0},
 };
 
 /** Returns the index of an option; -1 if there is no such name. */
@@ -55,8 +55,8 @@ static adcgs_status check_option(int option, const char *value, adcgs_error *err
                    (max == SECONDS_MAX && !adcgs_parse_seconds(value, min, max, &number)))
         return ADCGS_OK;
     if (name)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s=%s: expected a value that adcgs-enc --help names",
-                          options[option].name, value);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s=%s: expected a value that adcgs-enc --help names", options[option].name,
+                          value);
     return adcgs_fail(error, ADCGS_ERR_USAGE, "%s=%s: expected a number from %g to %g", options[option].name, value, min, max);
 }
 
@@ -76,7 +76,7 @@ static int copy_name(char out[ADCGS_SWEEP_NAME], const char *text, size_t length
 static adcgs_status parse_axis(adcgs_sweep_grid *grid, const char *text, size_t length, adcgs_error *error)
 {
     const char *const end = text + length, *const equals = memchr(text, '=', length);
-    adcgs_sweep_axis axis = { .n = 0 };
+    adcgs_sweep_axis axis = {.n = 0};
     int fine = grid->n < ADCGS_SWEEP_AXES && equals && copy_name(axis.name, text, (size_t)(equals - text));
     for (const char *at = equals; fine && at < end;) {
         const size_t n = strcspn(++at, "," BLANKS);
@@ -84,8 +84,10 @@ static adcgs_status parse_axis(adcgs_sweep_grid *grid, const char *text, size_t 
         at += n;
     }
     if (!fine)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--grid: \"%.*s\": expected at most %d of NAME=A,B,C, with at most %d values "
-                          "each", (int)length, text, ADCGS_SWEEP_AXES, ADCGS_SWEEP_LIST);
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--grid: \"%.*s\": expected at most %d of NAME=A,B,C, with at most %d values "
+                          "each",
+                          (int)length, text, ADCGS_SWEEP_AXES, ADCGS_SWEEP_LIST);
     for (int i = 0; i < grid->n; i++)
         if (!strcmp(grid->axis[i].name, axis.name))
             return adcgs_fail(error, ADCGS_ERR_USAGE, "--grid: %s is given twice", axis.name);
@@ -194,7 +196,7 @@ static adcgs_status check_choice(const char *choice, const char *preset, const c
 
 adcgs_status adcgs_sweep_grid_check(const adcgs_sweep_grid *grid, const char *preset, const char *set, adcgs_error *error)
 {
-    static const char *const others[] = { "lambda", "seed" };
+    static const char *const others[] = {"lambda", "seed"};
     for (int i = 0; i < grid->n; i++)
         for (size_t j = 0; j < ADCGS_COUNTOF(others); j++)
             if (!strcmp(grid->axis[i].name, others[j]))

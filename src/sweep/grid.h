@@ -8,9 +8,9 @@
 
 #include "base/base.h"
 
-#define ADCGS_SWEEP_LIST 16   /**< values of an axis, of lambda and of seeds; choices of a grid */
+#define ADCGS_SWEEP_LIST 16 /**< values of an axis, of lambda and of seeds; choices of a grid */
 #define ADCGS_SWEEP_AXES 4
-#define ADCGS_SWEEP_NAME 24   /**< bytes of an axis or value name, with its zero */
+#define ADCGS_SWEEP_NAME 24 /**< bytes of an axis or value name, with its zero */
 #define ADCGS_SWEEP_CHOICE (ADCGS_SWEEP_AXES * 2 * ADCGS_SWEEP_NAME)
 
 typedef struct adcgs_sweep_axis {

@@ -308,10 +308,11 @@ static void print_machine(const sheet *s, const adcgs_sweep *sweep)
         snprintf(threads, sizeof threads, "%d thread%s", sweep->threads, sweep->threads > 1 ? "s" : "");
     if (gmtime_r(&now, &day))
         strftime(date, sizeof date, "%Y-%m-%d", &day);
-    say(s, "%s, %ld processor%s online, %s unless a curve says otherwise; training seconds are CPU seconds of all threads; adcgs "
-           "%s, %s. %s", processor,
-        sysconf(_SC_NPROCESSORS_ONLN), adcgs_s((uint64_t)sysconf(_SC_NPROCESSORS_ONLN)), threads, PACKAGE_VERSION, date,
-        sweep->command);
+    say(s,
+        "%s, %ld processor%s online, %s unless a curve says otherwise; training seconds are CPU seconds of all threads; adcgs "
+        "%s, %s. %s",
+        processor, sysconf(_SC_NPROCESSORS_ONLN), adcgs_s((uint64_t)sysconf(_SC_NPROCESSORS_ONLN)), threads, PACKAGE_VERSION,
+        date, sweep->command);
 }
 
 static void print_settings(const sheet *s, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)

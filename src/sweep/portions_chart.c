@@ -8,8 +8,8 @@
 
 static const struct {
     const char *title, *colour;
-    int point, open;      /**< gnuplot's point types: of whole views, of moving regions */
-    const char *labels;   /**< offset of labels with the count, next to the points; NULL: the axis shows it */
+    int point, open;    /**< gnuplot's point types: of whole views, of moving regions */
+    const char *labels; /**< offset of labels with the count, next to the points; NULL: the axis shows it */
 } kinds[ADCGS_PORTION_COUNT] = {
     [ADCGS_PORTION_LAYERS] = {"first layers", "#0060ad", 5, 4, "offset 0.9,-0.7"},
     [ADCGS_PORTION_TIERS] = {"first tiers", "#008f5a", 9, 8, "offset -0.7,0.8"},
@@ -47,9 +47,11 @@ static int print_block(FILE *script, const adcgs_sweep_shown *shown, int kind, i
 static void print_curve(FILE *script, int kind, int moving)
 {
     const char *const name = adcgs_portion_name(kind), *const what = all_or_moving[moving];
-    fprintf(script, "$%s_%s using 1:2 with linespoints linecolor rgb '%s' linewidth %s dashtype %d pointtype %d pointsize 0.8 "
-                    "title '%s%s'", name, what, kinds[kind].colour, moving ? "1.3" : "2.2", moving ? 2 : 1,
-            moving ? kinds[kind].open : kinds[kind].point, kinds[kind].title, moving ? ", moving regions" : "");
+    fprintf(script,
+            "$%s_%s using 1:2 with linespoints linecolor rgb '%s' linewidth %s dashtype %d pointtype %d pointsize 0.8 "
+            "title '%s%s'",
+            name, what, kinds[kind].colour, moving ? "1.3" : "2.2", moving ? 2 : 1, moving ? kinds[kind].open : kinds[kind].point,
+            kinds[kind].title, moving ? ", moving regions" : "");
     if (kinds[kind].labels)
         fprintf(script, ", \\\n  $%s_%s using 1:2:3 with labels %s font ',9' textcolor rgb '%s' notitle", name, what,
                 kinds[kind].labels, kinds[kind].colour);
@@ -58,10 +60,11 @@ static void print_curve(FILE *script, int kind, int moving)
 /** Bytes below, their share of the file above. */
 static void print_axes(FILE *script, const char *title, const adcgs_sweep_shown *shown)
 {
-    fprintf(script, "set title '%s: test views of %s; labels count layers and tiers'\n"
-                    "set xlabel 'read of the file, kB (1000 bytes)'\nset ylabel 'PSNR, dB'\n"
-                    "set xrange [0:%.9g]\nset x2range [0:103]\nset x2tics 10 format '%%g %%%%'\nset xtics nomirror\n"
-                    "set offsets 0, 0, graph 0.05, graph 0.05\nset key maxcols 3\n",
+    fprintf(script,
+            "set title '%s: test views of %s; labels count layers and tiers'\n"
+            "set xlabel 'read of the file, kB (1000 bytes)'\nset ylabel 'PSNR, dB'\n"
+            "set xrange [0:%.9g]\nset x2range [0:103]\nset x2tics 10 format '%%g %%%%'\nset xtics nomirror\n"
+            "set offsets 0, 0, graph 0.05, graph 0.05\nset key maxcols 3\n",
             title, shown->run->tag, 1.03 * shown->run->figure[ADCGS_FIGURE_BYTES] / 1000);
 }
 

@@ -57,8 +57,8 @@ adcgs_status adcgs_sweep_save(json_t *root, const char *path, adcgs_error *error
     adcgs_status status =
         root ? adcgs_atomic_open(&file, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (status == ADCGS_OK) {
-        const int bad = json_dumpf(root, file.file, JSON_INDENT(2) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(12)) &&
-                        !ferror(file.file);
+        const int bad =
+            json_dumpf(root, file.file, JSON_INDENT(2) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(12)) && !ferror(file.file);
         if (bad) {
             adcgs_atomic_abort(&file);
             status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
@@ -229,7 +229,8 @@ static adcgs_status write_result(const adcgs_sweep *sweep, const adcgs_sweep_run
         return status;
     }
     return adcgs_sweep_save(json_pack("{s:o, s:o, s:o}", "settings", adcgs_sweep_settings(sweep, run), "encoder", encoder,
-                                      "evaluation", evaluation), path, error);
+                                      "evaluation", evaluation),
+                            path, error);
 }
 
 adcgs_status adcgs_sweep_execute(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const adcgs_sweep_run *from,
@@ -274,8 +275,11 @@ static void take_components(double *f, const json_t *components)
     static const struct {
         const char *name;
         adcgs_figure figure;
-    } known[] = {{"networks", ADCGS_FIGURE_NETWORKS}, {"geometry", ADCGS_FIGURE_GEOMETRY}, {"layer0", ADCGS_FIGURE_BASE},
-                 {"layer", ADCGS_FIGURE_DETAIL}, {"", ADCGS_FIGURE_REST}};
+    } known[] = {{"networks", ADCGS_FIGURE_NETWORKS},
+                 {"geometry", ADCGS_FIGURE_GEOMETRY},
+                 {"layer0", ADCGS_FIGURE_BASE},
+                 {"layer", ADCGS_FIGURE_DETAIL},
+                 {"", ADCGS_FIGURE_REST}};
     const char *name;
     const json_t *value;
     for (size_t i = 0; json_object_size(components) && i < ADCGS_COUNTOF(known); i++)
@@ -317,8 +321,8 @@ static adcgs_status check_files(const adcgs_sweep *sweep, const adcgs_sweep_run 
 {
     const double *const f = run->figure;
     if (run->beginning)
-        return size_of(sweep, run, ".checkpoint") > 0 ? ADCGS_OK :
-               adcgs_fail(error, ADCGS_ERR_DATA, "%s: its state file is missing", path);
+        return size_of(sweep, run, ".checkpoint") > 0 ? ADCGS_OK
+                                                      : adcgs_fail(error, ADCGS_ERR_DATA, "%s: its state file is missing", path);
     if (!(f[ADCGS_FIGURE_BYTES] > 0.0) || isnan(f[ADCGS_FIGURE_PSNR]))
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no size or no PSNR in it", path);
     if (size_of(sweep, run, ".adcgs") != f[ADCGS_FIGURE_BYTES])
@@ -337,8 +341,9 @@ adcgs_status adcgs_sweep_load(const adcgs_sweep *sweep, adcgs_sweep_run *run, ad
     json_t *root;
     ADCGS_TRY(adcgs_json_load(&root, path, error));
     take_figures(sweep, run, root);
-    adcgs_status status = adcgs_sweep_same_settings(sweep, run, root) ? check_files(sweep, run, root, path, error) :
-                              adcgs_fail(error, ADCGS_ERR_DATA, "%s: made with other settings", path);
+    adcgs_status status = adcgs_sweep_same_settings(sweep, run, root)
+                              ? check_files(sweep, run, root, path, error)
+                              : adcgs_fail(error, ADCGS_ERR_DATA, "%s: made with other settings", path);
     json_decref(root);
     if (status == ADCGS_OK)
         run->state = ADCGS_RUN_DONE;

@@ -11,8 +11,8 @@
 
 const char *adcgs_portion_name(adcgs_portion_kind kind)
 {
-    static const char *const names[ADCGS_PORTION_COUNT] = {
-        [ADCGS_PORTION_LAYERS] = "layers", [ADCGS_PORTION_TIERS] = "tiers", [ADCGS_PORTION_PERCENT] = "percent"};
+    static const char *const names[ADCGS_PORTION_COUNT] =
+        {[ADCGS_PORTION_LAYERS] = "layers", [ADCGS_PORTION_TIERS] = "tiers", [ADCGS_PORTION_PERCENT] = "percent"};
     return names[kind];
 }
 
@@ -59,8 +59,7 @@ adcgs_status adcgs_sweep_show(const adcgs_sweep *sweep, adcgs_sweep_plan *plan, 
         return ADCGS_OK;
     adcgs_sweep_path(path, sweep, plan->shown.run, ".json");
     ADCGS_TRY(adcgs_json_load(&root, path, error));
-    const adcgs_status status =
-        take_views(&plan->shown, json_object_get(json_object_get(root, "evaluation"), "views"), error);
+    const adcgs_status status = take_views(&plan->shown, json_object_get(json_object_get(root, "evaluation"), "views"), error);
     json_decref(root);
     return status;
 }

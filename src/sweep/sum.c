@@ -113,7 +113,8 @@ adcgs_comparison adcgs_sweep_compare(const adcgs_sweep_plan *plan, const adcgs_s
 {
     adcgs_curve_point own[ADCGS_SWEEP_LIST] = {{0, 0}}, theirs[ADCGS_SWEEP_LIST] = {{0, 0}};
     const int n_own = points_of(own, plan, &plan->curve[0], 0), n = points_of(theirs, plan, other, 0);
-    adcgs_comparison c = {.bd_rate = rate_against(plan, other, 0), .bd_rate_moving = rate_against(plan, other, 1),
+    adcgs_comparison c = {.bd_rate = rate_against(plan, other, 0),
+                          .bd_rate_moving = rate_against(plan, other, 1),
                           .margin = (double)NAN};
     for (int i = 0; i < n; i++) {
         const double quality = adcgs_curve_quality(own, n_own, theirs[i].bytes * (1 - FEWER));

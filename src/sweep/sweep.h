@@ -16,10 +16,10 @@
 #include <stdio.h>
 #include <sys/types.h>
 
-#define ADCGS_SWEEP_CELLS 320  /**< 16 x 16 of the grid, yardsticks, ablation */
-#define ADCGS_SWEEP_CURVES 40  /**< 16 of the grid, 7 yardsticks, earlier sweeps, other methods */
+#define ADCGS_SWEEP_CELLS 320 /**< 16 x 16 of the grid, yardsticks, ablation */
+#define ADCGS_SWEEP_CURVES 40 /**< 16 of the grid, 7 yardsticks, earlier sweeps, other methods */
 #define ADCGS_SWEEP_STAGES 12
-#define ADCGS_SWEEP_AGAINST 8  /**< earlier sweeps to compare with, and other methods */
+#define ADCGS_SWEEP_AGAINST 8   /**< earlier sweeps to compare with, and other methods */
 #define ADCGS_SWEEP_PORTIONS 24 /**< 5 layers, 8 tiers, ten tenths of the bytes */
 #define ADCGS_SWEEP_PATH 4096
 #define ADCGS_SWEEP_TAG (ADCGS_SWEEP_CHOICE + 96)
@@ -30,16 +30,16 @@ enum { ADCGS_YARD_NETWORKS = 1, ADCGS_YARD_UNCOMPRESSED = 2, ADCGS_YARD_GAUSSIAN
 /** The request. */
 typedef struct adcgs_sweep {
     const char *scene, *directory;
-    const char *programs;    /**< folder of adcgs-enc and adcgs-eval */
-    const char *command;     /**< the command line of the sweep */
-    const char *preset, *set; /**< NULL: the encoder's; no changes */
+    const char *programs;         /**< folder of adcgs-enc and adcgs-eval */
+    const char *command;          /**< the command line of the sweep */
+    const char *preset, *set;     /**< NULL: the encoder's; no changes */
     const char *dataset, *frames; /**< for both programs; NULL: detected from files; all */
-    const char *against;     /**< folders of earlier sweeps, with commas between; NULL: none */
-    const char *tables;      /**< NAME=FILE of other methods' tables, with commas between; NULL: none */
-    int iterations;          /**< 0: the preset's */
-    int threads;             /**< of each encoder; 0: one per CPU */
+    const char *against;          /**< folders of earlier sweeps, with commas between; NULL: none */
+    const char *tables;           /**< NAME=FILE of other methods' tables, with commas between; NULL: none */
+    int iterations;               /**< 0: the preset's */
+    int threads;                  /**< of each encoder; 0: one per CPU */
     int resume, ablation, yardsticks;
-    int fixed;               /**< model sizes do not depend on the scene */
+    int fixed; /**< model sizes do not depend on the scene */
     double lambda[ADCGS_SWEEP_LIST], seed[ADCGS_SWEEP_LIST];
     int n_lambda, n_seed;
     adcgs_sweep_grid grid;
@@ -59,23 +59,23 @@ typedef enum adcgs_figure {
     ADCGS_FIGURE_REST,       /**< of everything else */
     ADCGS_FIGURE_PSNR,       /**< dB; this and all below: of the decoded stream on the test views */
     ADCGS_FIGURE_SSIM,
-    ADCGS_FIGURE_MOVING,     /**< PSNR of moving regions; NaN if there are none */
-    ADCGS_FIGURE_SECONDS,    /**< CPU seconds of training, including a shared beginning */
-    ADCGS_FIGURE_SPEED,      /**< frames per second */
-    ADCGS_FIGURE_OBJECTIVE,  /**< the training objective: loss of the training views plus lambda times all bytes */
+    ADCGS_FIGURE_MOVING,    /**< PSNR of moving regions; NaN if there are none */
+    ADCGS_FIGURE_SECONDS,   /**< CPU seconds of training, including a shared beginning */
+    ADCGS_FIGURE_SPEED,     /**< frames per second */
+    ADCGS_FIGURE_OBJECTIVE, /**< the training objective: loss of the training views plus lambda times all bytes */
     ADCGS_FIGURE_COUNT
 } adcgs_figure;
 
 typedef enum adcgs_run_state { ADCGS_RUN_WAITS, ADCGS_RUN_RUNS, ADCGS_RUN_DONE, ADCGS_RUN_FAILED } adcgs_run_state;
 
 typedef struct adcgs_sweep_run {
-    char tag[ADCGS_SWEEP_TAG]; /**< names its files; runs of the same tag are one */
-    int beginning;          /**< only a state that other runs continue from */
-    int uncompressed;       /**< also stored as plain numbers */
-    double lambda, seed;    /**< < 0: not given to the encoder */
+    char tag[ADCGS_SWEEP_TAG];       /**< names its files; runs of the same tag are one */
+    int beginning;                   /**< only a state that other runs continue from */
+    int uncompressed;                /**< also stored as plain numbers */
+    double lambda, seed;             /**< < 0: not given to the encoder */
     char choice[ADCGS_SWEEP_CHOICE]; /**< of the grid; "" if nothing is varied */
-    const char *without;    /**< parts left out; "" for none */
-    int from;               /**< the run that is its beginning; -1: none */
+    const char *without;             /**< parts left out; "" for none */
+    int from;                        /**< the run that is its beginning; -1: none */
     adcgs_run_state state;
     pid_t child;
     double figure[ADCGS_FIGURE_COUNT];
@@ -87,7 +87,7 @@ typedef struct adcgs_sweep_cell {
 
 /** A figure over the seeds of a cell. */
 typedef struct adcgs_spread {
-    int n;                 /**< runs that have it; 0: the rest is NaN */
+    int n; /**< runs that have it; 0: the rest is NaN */
     double mean, min, max;
 } adcgs_spread;
 
@@ -100,9 +100,9 @@ static inline adcgs_spread adcgs_spread_one(double mean)
 /** A line of a table: a cell with one of its sizes. */
 typedef struct adcgs_sweep_row {
     const char *name;
-    double lambda; /**< < 0: the preset's, or without effect */
+    double lambda;                   /**< < 0: the preset's, or without effect */
     char choice[ADCGS_SWEEP_CHOICE]; /**< of the grid */
-    int is_stream; /**< bytes are those of a stream, with training seconds and a rendering speed */
+    int is_stream;                   /**< bytes are those of a stream, with training seconds and a rendering speed */
     adcgs_spread bytes, psnr, moving, ssim, seconds, speed, objective;
     double networks; /**< mean share of the stream; NaN if it is not a stream */
 } adcgs_sweep_row;
@@ -125,13 +125,16 @@ typedef struct adcgs_sweep_stage {
 /** A test view. */
 typedef struct adcgs_sweep_view {
     char name[ADCGS_CAMERA_NAME_MAX + 1];
-    int camera; /**< views of a camera are consecutive, in the order of their times */
+    int camera;                /**< views of a camera are consecutive, in the order of their times */
     double time, psnr, moving; /**< seconds, dB; NaN if unknown */
 } adcgs_sweep_view;
 
 /** Kinds of parts of a stream: its first layers, its first tiers, or its first bytes. */
 typedef enum adcgs_portion_kind {
-    ADCGS_PORTION_LAYERS, ADCGS_PORTION_TIERS, ADCGS_PORTION_PERCENT, ADCGS_PORTION_COUNT
+    ADCGS_PORTION_LAYERS,
+    ADCGS_PORTION_TIERS,
+    ADCGS_PORTION_PERCENT,
+    ADCGS_PORTION_COUNT
 } adcgs_portion_kind;
 
 /** A part of a stream, and the quality of the test views decoded from it. */
@@ -221,13 +224,13 @@ typedef struct adcgs_curve_facts {
 
 /** The codec's own curve against another. */
 typedef struct adcgs_comparison {
-    double bd_rate;  /**< percent of bytes at equal PSNR, < 0: the codec needs fewer; NaN if undefined */
+    double bd_rate;        /**< percent of bytes at equal PSNR, < 0: the codec needs fewer; NaN if undefined */
     double bd_rate_moving; /**< the same at equal PSNR of moving regions */
-    int compared;    /**< points of the other curve that are larger than the codec's smallest, and so can be compared */
-    int beyond;      /**< the other points */
-    double margin;   /**< least PSNR advantage of the codec over such a point with fewer bytes, dB; NaN if compared is 0 */
-    int above;       /**< compared > 0 and margin >= 0 */
-    double smaller;  /**< bytes of the other's best point over those of the codec's smallest point within 0.1 dB of it, or NaN */
+    int compared;          /**< points of the other curve that are larger than the codec's smallest, and so can be compared */
+    int beyond;            /**< the other points */
+    double margin;         /**< least PSNR advantage of the codec over such a point with fewer bytes, dB; NaN if compared is 0 */
+    int above;             /**< compared > 0 and margin >= 0 */
+    double smaller; /**< bytes of the other's best point over those of the codec's smallest point within 0.1 dB of it, or NaN */
 } adcgs_comparison;
 
 adcgs_curve_facts adcgs_sweep_facts(const adcgs_sweep_plan *plan);
@@ -243,7 +246,7 @@ typedef struct adcgs_sweep_picture {
     const char *name, *run; /**< "worst"; the run's tag */
     char path[ADCGS_SWEEP_PATH];
     int is_there;
-    unsigned index; /**< among the test views */
+    unsigned index;    /**< among the test views */
     double psnr, time; /**< dB; seconds, NaN if it has none */
 } adcgs_sweep_picture;
 /** Renders the worst and the middle test view of the representative run again (views_chart.c). */

@@ -166,14 +166,15 @@ static int add_uncompressed(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, ad
 
 static int add_gaussians(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_sweep_run like)
 {
-    adcgs_sweep_curve *const curve = adcgs_sweep_add_curve(
-        plan, "per Gaussian", "each primitive with features of its own, deformed by itself", ADCGS_FIGURE_BYTES, 1);
+    adcgs_sweep_curve *const curve =
+        adcgs_sweep_add_curve(plan, "per Gaussian", "each primitive with features of its own, deformed by itself",
+                              ADCGS_FIGURE_BYTES, 1);
     like.without = "anchors";
     if (!add_lambdas(plan, sweep, curve, like))
         return 0;
     like.uncompressed = 1;
-    return add_point(plan, "per Gaussian uncompressed", "the same without rate and rounding, 4 bytes a number",
-                     ADCGS_FIGURE_RAW, add_cell(plan, sweep, like));
+    return add_point(plan, "per Gaussian uncompressed", "the same without rate and rounding, 4 bytes a number", ADCGS_FIGURE_RAW,
+                     add_cell(plan, sweep, like));
 }
 
 static int add_yardsticks(adcgs_sweep_plan *plan, const adcgs_sweep *sweep)

@@ -56,7 +56,8 @@ static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const
 }
 
 /** Columns of csv_row(), after the name. */
-#define ROW_COLUMNS "lambda,choice,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,cpu_seconds," \
+#define ROW_COLUMNS                                                                                        \
+    "lambda,choice,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,cpu_seconds," \
     "frames_per_second,dynamic_psnr,objective"
 
 static adcgs_status write_curves(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
@@ -205,10 +206,22 @@ static void json_stages(adcgs_json *json, const adcgs_sweep_plan *plan)
 
 static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
 {
-    static const char *const names[ADCGS_FIGURE_COUNT] = {
-        "bytes", "bytes_with_32_bit_weights", "uncompressed_bytes", "zstd_bytes", "xz_bytes", "network_bytes",
-        "position_bytes", "base_bytes", "detail_bytes", "other_bytes",
-        "psnr", "ssim", "dynamic_psnr", "cpu_seconds", "frames_per_second", "objective"};
+    static const char *const names[ADCGS_FIGURE_COUNT] = {"bytes",
+                                                          "bytes_with_32_bit_weights",
+                                                          "uncompressed_bytes",
+                                                          "zstd_bytes",
+                                                          "xz_bytes",
+                                                          "network_bytes",
+                                                          "position_bytes",
+                                                          "base_bytes",
+                                                          "detail_bytes",
+                                                          "other_bytes",
+                                                          "psnr",
+                                                          "ssim",
+                                                          "dynamic_psnr",
+                                                          "cpu_seconds",
+                                                          "frames_per_second",
+                                                          "objective"};
     adcgs_json_open(json, "runs", '[');
     for (int i = 0; i < plan->n_runs; i++) {
         const adcgs_sweep_run *const run = &plan->run[i];

@@ -43,10 +43,12 @@ adcgs_status adcgs_chart_views(const adcgs_chart *chart, const adcgs_sweep *swee
         adcgs_atomic_abort(&file);
         return ADCGS_OK;
     }
-    fprintf(file.file, "set title '%s: test views of %s'\nset xlabel 'time, s'\nset ylabel 'PSNR, dB'\n"
-                       "set offsets 0, 0, graph 0.05, graph 0.05\nplot $all using 1:2 smooth unique with lines linewidth 1.5 "
-                       "linecolor rgb '#0060ad' title 'mean at a time', $all using 1:2 with points pointtype 7 pointsize 0.4 "
-                       "linecolor rgb '#0060ad' title 'view'", chart->title, shown->run->tag);
+    fprintf(file.file,
+            "set title '%s: test views of %s'\nset xlabel 'time, s'\nset ylabel 'PSNR, dB'\n"
+            "set offsets 0, 0, graph 0.05, graph 0.05\nplot $all using 1:2 smooth unique with lines linewidth 1.5 "
+            "linecolor rgb '#0060ad' title 'mean at a time', $all using 1:2 with points pointtype 7 pointsize 0.4 "
+            "linecolor rgb '#0060ad' title 'view'",
+            chart->title, shown->run->tag);
     if (moving)
         fprintf(file.file, ", \\\n  $moving using 1:2 smooth unique with lines linewidth 1.5 linecolor rgb '#c03000' title "
                            "'of moving regions', $moving using 1:2 with points pointtype 7 pointsize 0.4 linecolor rgb '#c03000' "

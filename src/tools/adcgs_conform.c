@@ -44,8 +44,7 @@ static adcgs_outcome try_everywhere(const adcgs_vector *vector, const uint8_t *d
             if (adcgs_vector_try(vector, data, bytes, &t, why) == ADCGS_OUTCOME_OK)
                 continue;
             snprintf(what, ADCGS_WHAT, "%s, %d thread%s, input %s: %.320s", adcgs_cpu_name(t.cpu), t.threads,
-                     adcgs_s((uint64_t)t.threads),
-                     t.step ? "in pieces" : "whole", why);
+                     adcgs_s((uint64_t)t.threads), t.step ? "in pieces" : "whole", why);
             return ADCGS_OUTCOME_WRONG;
         }
     return ADCGS_OUTCOME_OK;
@@ -150,33 +149,55 @@ int main(int argc, char **argv)
     settings s = {.point = 3, .program = {.timeout = 20}};
     int first = 0;
     const adcgs_option options[] = {
-        {.name = "decoder", .kind = ADCGS_OPTION_STRING, .target = &s.program.command, .value = "COMMAND",
+        {.name = "decoder",
+         .kind = ADCGS_OPTION_STRING,
+         .target = &s.program.command,
+         .value = "COMMAND",
          .help = "program to check instead of the library; the shell runs it, with\n{in} and {request} replaced by files"},
-        {.name = "point", .kind = ADCGS_OPTION_CHOICE, .target = &s.point, .choices = points, .value = "POINT",
+        {.name = "point",
+         .kind = ADCGS_OPTION_CHOICE,
+         .target = &s.point,
+         .choices = points,
+         .value = "POINT",
          .help = "conformance point that the program claims: P, M, S or R\n(default R)"},
-        {.name = "layers", .kind = ADCGS_OPTION_FLAG, .target = &s.program.layers,
+        {.name = "layers",
+         .kind = ADCGS_OPTION_FLAG,
+         .target = &s.program.layers,
          .help = "the program claims that it can leave out layers: check that, too"},
-        {.name = "timeout", .kind = ADCGS_OPTION_INT, .target = &s.program.timeout, .min = 1, .max = 3600, .value = "SECONDS",
+        {.name = "timeout",
+         .kind = ADCGS_OPTION_INT,
+         .target = &s.program.timeout,
+         .min = 1,
+         .max = 3600,
+         .value = "SECONDS",
          .help = "time limit of the program for a vector, seconds (default 20)"},
-        {.name = "filter", .kind = ADCGS_OPTION_STRING, .target = &s.filter, .value = "PATTERN",
+        {.name = "filter",
+         .kind = ADCGS_OPTION_STRING,
+         .target = &s.filter,
+         .value = "PATTERN",
          .help = "names of the vectors to check, a pattern such as 'bad-geom-*'\n(default: all)"},
         {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &s.list, .help = "print names and titles without checking"},
-        {.name = "junit", .kind = ADCGS_OPTION_FILE, .target = &s.junit, .value = "FILE",
+        {.name = "junit",
+         .kind = ADCGS_OPTION_FILE,
+         .target = &s.junit,
+         .value = "FILE",
          .help = "results as JUnit XML (default: none)"},
-        {.name = "self-test", .kind = ADCGS_OPTION_FLAG, .target = &s.selftest,
+        {.name = "self-test",
+         .kind = ADCGS_OPTION_FLAG,
+         .target = &s.selftest,
          .help = "damage each expectation and each stream in memory, one at a time, and run\n"
                  "programs that lie, crash and hang; require that the check notices"},
     };
-    const adcgs_cli cli = {
-        .program = "adcgs-conform",
-        .operands = "[MANIFEST]",
-        .summary = "Check a decoder against conformance vectors.",
-        .details = "The default MANIFEST is conformance/manifest.json, here or else as installed in\n"
-                   CONFORMANCE_DIRECTORY ".\nWithout --decoder, the library is checked at every CPU level of this machine,\n"
-                                         "with 1, 2 and 7 threads, with the input as a whole and in pieces of a few bytes.",
-        .options = options,
-        .n_options = ADCGS_COUNTOF(options),
-        .max_operands = 1};
+    const adcgs_cli cli =
+        {.program = "adcgs-conform",
+         .operands = "[MANIFEST]",
+         .summary = "Check a decoder against conformance vectors.",
+         .details = "The default MANIFEST is conformance/manifest.json, here or else as installed in\n" CONFORMANCE_DIRECTORY
+                    ".\nWithout --decoder, the library is checked at every CPU level of this machine,\n"
+                    "with 1, 2 and 7 threads, with the input as a whole and in pieces of a few bytes.",
+         .options = options,
+         .n_options = ADCGS_COUNTOF(options),
+         .max_operands = 1};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)
         return leave;

@@ -51,8 +51,7 @@ typedef struct streams {
 
 /** Finishes a rendered frame and passes the image to the sink. */
 static adcgs_status write_frame(const streams *from, const adcgs_camera_frame *frame, adcgs_sink *sink, adcgs_canvas *canvas,
-                                int index,
-                                adcgs_error *error)
+                                int index, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_canvas_finish(canvas, from->decoder, from->beside, frame, error));
     return adcgs_sink_write_with(sink, &canvas->shown, &canvas->extras, index, error);
@@ -198,8 +197,8 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
         if (*mismatch)
             adcgs_cli_error(cli, ADCGS_OK, "%s: the frames' MD5 is %s, expected %s", s->input, hex, s->verify);
         else
-            adcgs_cli_note(cli, "%s: %d frame%s of %dx%d, %.2f ms each", s->input, frames.n, frames.n == 1 ? "" : "s",
-                           size[0], size[1], 1e3 * seconds / frames.n);
+            adcgs_cli_note(cli, "%s: %d frame%s of %dx%d, %.2f ms each", s->input, frames.n, frames.n == 1 ? "" : "s", size[0],
+                           size[1], 1e3 * seconds / frames.n);
     }
     adcgs_camera_path_free(&frames);
     return status;

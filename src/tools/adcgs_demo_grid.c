@@ -72,14 +72,27 @@ int main(int argc, char **argv)
     const char *output = "grid.png";
     int columns = 5, first = 0;
     const adcgs_option options[] = {
-        {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_FILE, .target = &output, .value = "FILE",
+        {.name = "output",
+         .letter = 'o',
+         .kind = ADCGS_OPTION_FILE,
+         .target = &output,
+         .value = "FILE",
          .help = "image to write (default: grid.png)"},
-        {.name = "columns", .kind = ADCGS_OPTION_INT, .target = &columns, .min = 1, .max = 64, .value = "N",
+        {.name = "columns",
+         .kind = ADCGS_OPTION_INT,
+         .target = &columns,
+         .min = 1,
+         .max = 64,
+         .value = "N",
          .help = "number of test views (default: 5)"},
     };
-    const adcgs_cli cli = {.program = "adcgs-demo-grid", .operands = "FILE SCENE",
-                           .summary = "Lay out test views: truth, decoded, four times their difference.", .options = options,
-                           .n_options = ADCGS_COUNTOF(options), .min_operands = 2, .max_operands = 2};
+    const adcgs_cli cli = {.program = "adcgs-demo-grid",
+                           .operands = "FILE SCENE",
+                           .summary = "Lay out test views: truth, decoded, four times their difference.",
+                           .options = options,
+                           .n_options = ADCGS_COUNTOF(options),
+                           .min_operands = 2,
+                           .max_operands = 2};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)
         return leave;

@@ -56,9 +56,10 @@ static adcgs_status configure(adcgs_train_config *c, const adcgs_enc_options *o,
         int given;
         const char *name;
         double value;
-    } own[] = { { o->has_lambda, "lambda", o->lambda }, { o->has_iterations, "iterations", o->iterations },
-                { o->has_scale, "scale", o->scale }, { o->has_k, "k", o->k }, { o->has_seed, "seed", (double)o->seed },
-                { o->has_max_anchors, "max_anchors", o->max_anchors }, { o->no_progression, "tiers", 1 } };
+    } own[] = {{o->has_lambda, "lambda", o->lambda},   {o->has_iterations, "iterations", o->iterations},
+               {o->has_scale, "scale", o->scale},      {o->has_k, "k", o->k},
+               {o->has_seed, "seed", (double)o->seed}, {o->has_max_anchors, "max_anchors", o->max_anchors},
+               {o->no_progression, "tiers", 1}};
     for (size_t i = 0; i < ADCGS_COUNTOF(own); i++)
         if (own[i].given)
             ADCGS_TRY(adcgs_train_set_value(c, own[i].name, own[i].value, error));
@@ -113,8 +114,9 @@ static adcgs_status write_stream(adcgs_stream *stream, adcgs_enc_context *w, adc
         adcgs_raw_prepare(w->t->f);
     adcgs_status status = adcgs_enc_encode(stream, &bytes, w, pool, error);
     if (status == ADCGS_OK && w->t->config.target == ADCGS_TARGET_SIZE && bytes.size > w->o->size)
-        status = adcgs_fail(error, ADCGS_ERR_USAGE, "%s: not written, since a single anchor and its networks take %zu bytes: "
-                                                    "give a larger --size",
+        status = adcgs_fail(error, ADCGS_ERR_USAGE,
+                            "%s: not written, since a single anchor and its networks take %zu bytes: "
+                            "give a larger --size",
                             w->o->output, bytes.size);
     if (status == ADCGS_OK)
         status = adcgs_atomic_save(w->o->output, bytes.data, bytes.size, error);
@@ -127,20 +129,22 @@ static adcgs_status write_stream(adcgs_stream *stream, adcgs_enc_context *w, adc
 /** Warns if the output is named like a video or another format, since no other player plays a stream. */
 static void note_extension(const adcgs_cli *cli, const char *path)
 {
-    static const char *const others[] = { "mp4", "mkv", "webm", "mov", "avi", "y4m", "gif", "png", "jpg", "jpeg", "html",
-                                          "ply", "spz", "sog", "glb", "splat" };
+    static const char *const others[] = {"mp4", "mkv",  "webm", "mov", "avi", "y4m", "gif", "png",
+                                         "jpg", "jpeg", "html", "ply", "spz", "sog", "glb", "splat"};
     const char *const extension = adcgs_extension(path);
     for (size_t i = 0; i < ADCGS_COUNTOF(others); i++)
         if (!strcasecmp(extension, others[i]))
-            adcgs_cli_note(cli, "%s: this file will hold an adcgs stream, not %s: name it .adcgs, and convert it with adcgs-dec "
-                                "or adcgs-share", path, others[i]);
+            adcgs_cli_note(cli,
+                           "%s: this file will hold an adcgs stream, not %s: name it .adcgs, and convert it with adcgs-dec "
+                           "or adcgs-share",
+                           path, others[i]);
 }
 
 /** Refuses two outputs of the same name. */
 static adcgs_status check_distinct(const adcgs_enc_options *o, adcgs_error *error)
 {
-    const char *const names[] = { o->output, o->beginning, o->uncompressed, o->checkpoint, o->log, o->preview };
-    const char *const options[] = { "output", "beginning", "uncompressed", "checkpoint", "log", "preview" };
+    const char *const names[] = {o->output, o->beginning, o->uncompressed, o->checkpoint, o->log, o->preview};
+    const char *const options[] = {"output", "beginning", "uncompressed", "checkpoint", "log", "preview"};
     for (size_t i = 0; i < ADCGS_COUNTOF(names); i++)
         for (size_t j = 0; j < i; j++)
             if (names[i] && names[j] && adcgs_atomic_same(names[i], names[j]))
@@ -153,9 +157,9 @@ static adcgs_status check_distinct(const adcgs_enc_options *o, adcgs_error *erro
 
 static adcgs_status report(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_time spent, int *met, adcgs_error *error)
 {
-    return adcgs_enc_report_print(job->cli, &(adcgs_enc_report){ job->o->output, &job->config, job->cpu, job->scene, w->last,
-                                                                 spent, w->uncompressed_bytes, job->o->threads, job->o->json,
-                                                                 w->interrupts },
+    return adcgs_enc_report_print(job->cli,
+                                  &(adcgs_enc_report){job->o->output, &job->config, job->cpu, job->scene, w->last, spent,
+                                                      w->uncompressed_bytes, job->o->threads, job->o->json, w->interrupts},
                                   met, error);
 }
 
@@ -163,8 +167,8 @@ static adcgs_status encode_whole(adcgs_enc_context *w, const adcgs_enc_job *job,
 {
     adcgs_stream stream;
     adcgs_enc_ranks_whole(w, job);
-    adcgs_status status = adcgs_enc_train(w, job, job->scene, NULL, NULL, job->o->finish ? job->o->finish : job->o->resume,
-                                          job->o->started, error);
+    adcgs_status status =
+        adcgs_enc_train(w, job, job->scene, NULL, NULL, job->o->finish ? job->o->finish : job->o->resume, job->o->started, error);
     if (adcgs_enc_team_follows(&w->team))
         return status == ADCGS_OK ? adcgs_rank_follow(w, job, error) : adcgs_rank_fail(job, error);
     if (status != ADCGS_OK)
@@ -186,7 +190,7 @@ static adcgs_status encode_whole(adcgs_enc_context *w, const adcgs_enc_job *job,
 
 static adcgs_status encode_segments(adcgs_enc_context *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
 {
-    adcgs_time spent = { 0, 0 };
+    adcgs_time spent = {0, 0};
     adcgs_claim *claim = NULL;
     char *name;
     ADCGS_TRY(adcgs_enc_claim_name(&name, w->base, error));
@@ -210,8 +214,10 @@ static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_context *w, adcgs_scen
     if (o->frames)
         ADCGS_TRY(adcgs_frames_parse(&scene->frames, o->frames, error));
     if (o->fps && adcgs_fps_parse(o->fps, &scene->rate))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
-                          "30000/1001", o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
+                          "30000/1001",
+                          o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
     ADCGS_TRY(configure(&job->config, o, job->cpu, error));
     ADCGS_TRY(check_distinct(o, error));
     if (o->output && !(job->ranks && job->ranks->rank))
@@ -241,8 +247,10 @@ static adcgs_status name_base(adcgs_enc_context *w, adcgs_error *error)
     memcpy(w->state, w->base, n);
     const char *const slash = strrchr(w->base, '/');
     if (strlen(slash ? slash + 1 : w->base) + (o->has_segment ? PART_NAME : 0) > NAME_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "the name of the run's state, with its suffix, is longer than %d bytes: give a "
-                                                  "shorter one with --checkpoint", NAME_MAX);
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "the name of the run's state, with its suffix, is longer than %d bytes: give a "
+                          "shorter one with --checkpoint",
+                          NAME_MAX);
     return ADCGS_OK;
 }
 
@@ -252,8 +260,8 @@ static adcgs_status open_log(adcgs_enc_context *w, adcgs_error *error)
     if (adcgs_enc_team_follows(&w->team))
         return ADCGS_OK;
     w->log = o->log ? fopen(o->log, o->resume || o->finish || o->plan ? "a" : "w") : NULL;
-    return !o->log || w->log ? ADCGS_OK :
-                               adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
+    return !o->log || w->log ? ADCGS_OK
+                             : adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
 }
 
 #define EARLY "interrupted before training began: there is no state to save\n"
@@ -261,7 +269,7 @@ static adcgs_status open_log(adcgs_enc_context *w, adcgs_error *error)
 static adcgs_status run(adcgs_enc_job *job, adcgs_enc_context *w, int *met, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
-    adcgs_scene_options scene = { .points_path = o->points, .dataset = o->dataset };
+    adcgs_scene_options scene = {.points_path = o->points, .dataset = o->dataset};
     ADCGS_TRY(prepare(job, w, &scene, error));
     const int follows = job->ranks && job->ranks->rank;
     const uint32_t shared = o->live || o->finish ? 1 : job->config.batch;
@@ -278,9 +286,8 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_context *w, int *met, adcg
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
     if (!follows)
         adcgs_enc_report_remarks(job->cli, job->scene);
-    adcgs_progress_show(&w->progress, "scene   %u training view%s, read in %.0f s",
-                        job->scene->n_views[ADCGS_SPLIT_TRAIN], adcgs_s(job->scene->n_views[ADCGS_SPLIT_TRAIN]),
-                        adcgs_seconds() - o->started.clock);
+    adcgs_progress_show(&w->progress, "scene   %u training view%s, read in %.0f s", job->scene->n_views[ADCGS_SPLIT_TRAIN],
+                        adcgs_s(job->scene->n_views[ADCGS_SPLIT_TRAIN]), adcgs_seconds() - o->started.clock);
     if (w->preview.path)
         ADCGS_TRY(adcgs_enc_preview_begin(o->preview, job->scene, error));
     adcgs_enc_reduce_large(job, job->scene, &w->progress);
@@ -300,9 +307,13 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_context *w, int *met, adcg
 static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, const adcgs_ranks *ranks, adcgs_pool *pool, int *met,
                            adcgs_error *error)
 {
-    adcgs_enc_job job = { .cli = cli, .o = o, .ranks = ranks->size > 1 ? ranks : NULL, .pool = pool };
-    adcgs_enc_context w = { .o = o, .target = o->plan ? o->plan : o->beginning ? o->beginning : o->output,
-                            .keeps = o->checkpoint || o->plan, .preview = { .path = ranks->rank ? NULL : o->preview } };
+    adcgs_enc_job job = {.cli = cli, .o = o, .ranks = ranks->size > 1 ? ranks : NULL, .pool = pool};
+    adcgs_enc_context w = {.o = o,
+                           .target = o->plan        ? o->plan
+                                     : o->beginning ? o->beginning
+                                                    : o->output,
+                           .keeps = o->checkpoint || o->plan,
+                           .preview = {.path = ranks->rank ? NULL : o->preview}};
     adcgs_progress_init(&w.progress, cli);
     adcgs_progress_keep(&w.progress);
     adcgs_buffer_init(&w.changes);
@@ -369,11 +380,14 @@ static int check_live(const adcgs_cli *cli, adcgs_enc_options *o)
         o->segment = ADCGS_ENC_LIVE_SEGMENT;
     if (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0 || o->frames || o->fps ||
         o->checkpoint || o->dataset || o->or_whole || o->has_fade)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--live excludes --size, --psnr, --beginning, --uncompressed, --time-limit, "
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
+                               "--live excludes --size, --psnr, --beginning, --uncompressed, --time-limit, "
                                "--frames, --fps, --checkpoint, --dataset, --or-whole and --fade");
     if (o->has_delay && o->delay <= o->segment)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay %g: a segment of %g s is trained after its end is filmed: give a "
-                                                     "longer delay, or a shorter --segment", o->delay, o->segment);
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
+                               "--delay %g: a segment of %g s is trained after its end is filmed: give a "
+                               "longer delay, or a shorter --segment",
+                               o->delay, o->segment);
     if (o->json && !strcmp(o->output, "-"))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--json and -o - both write to standard output");
     return -1;
@@ -388,113 +402,116 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     const char *names[ADCGS_SETTING_NAMES + 1];
     adcgs_setting_names(names);
     const adcgs_option options[] = {
-        { "output", 'o', ADCGS_OPTION_FILE, &o->output, 0, 0, "FILE",
-          "stream to write (required, except with --beginning)", NULL, NULL },
-        { "preset", 'p', ADCGS_OPTION_STRING, &o->preset, 0, 0, "NAME",
-          "draft, fast, medium, slow or paper (default fast)", adcgs_train_presets, NULL },
-        { "lambda", 'l', ADCGS_OPTION_REAL, &o->lambda, lambda->min, lambda->max, "X",
-          "loss per mebibyte of features and networks; a larger value\nmakes smaller files (default: the preset's, times the\n"
-          "images' contrast over 0.22)", NULL, &o->has_lambda },
-        { "size", 's', ADCGS_OPTION_SIZE, &o->size, ADCGS_TARGET_SIZE_MIN, ADCGS_TARGET_SIZE_MAX, "BYTES",
-          "maximum file size, reached within 3 % (150k, 1.5M, 2MiB);\nreplaces --lambda", NULL,
-          &o->has_size },
-        { "psnr", 0, ADCGS_OPTION_REAL, &o->psnr, ADCGS_TARGET_PSNR_MIN, ADCGS_TARGET_PSNR_MAX, "DB",
-          "target mean PSNR of the training views, decoded from the\nfile, dB, +/- 0.1; the file is as small as it allows; test\n"
-          "views are never used", NULL, &o->has_psnr },
-        { "iterations", 'n', ADCGS_OPTION_INT, &o->iterations, iterations->min, iterations->max, "N",
-          "iterations of the run (default: the preset's)", NULL, &o->has_iterations },
-        { "scale", 0, ADCGS_OPTION_INT, &o->scale, scale->min, scale->max, "S",
-          "divisor of the image size, an integer (default: 1, more for\nimages of over 1600 pixels)", NULL,
-          &o->has_scale },
-        { "k", 0, ADCGS_OPTION_INT, &o->k, k->min, k->max, "N",
-          "primitives per anchor, 1 to 16 (default: the preset's)", NULL, &o->has_k },
-        { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, anchors->min, anchors->max, "N",
-          "budget of anchors (default: from the amount of detail in\nthe images)", NULL, &o->has_max_anchors },
-        { "dataset", 0, ADCGS_OPTION_CHOICE, &o->dataset, 0, 0, "KIND",
-          "kind of the scene, instead of detecting it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs, splats\n"
-          "or panoptic",
-          adcgs_dataset_names, NULL },
-        { "frames", 0, ADCGS_OPTION_STRING, &o->frames, 0, 0, "A:B:STEP",
-          "frames A, A + STEP, ... below B of videos, or timestamps of\nimages, counted so; A, B or :STEP may be left out", NULL,
-          NULL },
-        { "fps", 0, ADCGS_OPTION_STRING, &o->fps, 0, 0, "N[/D]",
-          "rate of the selected frames, per second (default: the\nscene's, else 30)", NULL, NULL },
-        { "points", 0, ADCGS_OPTION_FILE, &o->points, 0, 0, "FILE",
-          "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
-        { "segment", 0, ADCGS_OPTION_SECONDS, &o->segment, 1e-3, 1e6, "S",
-          "length of segments, seconds, cut at the nearest timestamp;\n"
-          "each is trained from the previous one, in a run of its own;\n"
-          "with --plan: number of the only segment to train", NULL, &o->has_segment },
-        { "plan", 0, ADCGS_OPTION_FILE, &o->plan, 0, 0, "FILE",
-          "plan of the segments, with all settings: written, or read\nwith --segment 1, 2, ..., which trains one part anywhere;\n"
-          "adcgs-join joins the parts", NULL, NULL },
-        { "cut", 0, ADCGS_OPTION_SECONDS, &o->cut, 1e-3, 1e6, "S",
-          "with --plan: length of segments, seconds (default 2)", NULL, &o->has_cut },
-        { "key", 0, ADCGS_OPTION_SECONDS, &o->key, 0, 1e6, "S",
-          "with --segment: longest interval of key segments, which need\n"
-          "no other and where playback can begin, seconds (default 10)", NULL,
-          &o->has_key },
-        { "fade", 0, ADCGS_OPTION_SECONDS, &o->fade, 0, 1e6, "S",
-          "with --segment: crossfade from the previous segment, seconds,\n"
-          "at most a quarter of a segment (default 0.2; 0: none)", NULL, &o->has_fade },
-        { "or-whole", 0, ADCGS_OPTION_FLAG, &o->or_whole, 0, 0, NULL,
-          "with --segment: also train one segment of the whole time,\nand write that if it is neither larger nor worse", NULL,
-          NULL },
-        { "live", 0, ADCGS_OPTION_FLAG, &o->live, 0, 0, NULL,
-          "train footage while it arrives: SCENE is a scene file, or a\n"
-          "folder with scene.json; segments, of 2 s or as --segment says,\n"
-          "are written when done; -o - writes to standard output; a\ncamera's video may be -, standard input", NULL, NULL },
-        { "delay", 0, ADCGS_OPTION_SECONDS, &o->delay, 1e-3, 1e6, "S",
-          "with --live: maximum time from filming to writing, seconds;\neffort falls if needed (default: no limit)", NULL,
-          &o->has_delay },
-        { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
-          "parts to leave out: coarse, fine, deformation (both), rate,\n"
-          "densification, anchors, removal or weight_steps", NULL, NULL },
-        { "uncompressed", 0, ADCGS_OPTION_FILE, &o->uncompressed, 0, 0, "FILE",
-          "file for the model as plain binary32 numbers, trained\nwithout rate and rounding; the stream is then the finest", NULL,
-          NULL },
-        { "fixed", 0, ADCGS_OPTION_FLAG, &o->fixed, 0, 0, NULL,
-          "model size from the preset alone, not from the scene", NULL, NULL },
-        { "no-progression", 0, ADCGS_OPTION_FLAG, &o->no_progression, 0, 0, NULL,
-          "all anchors at once, instead of tiers that each add detail\nto the previous ones; a few percent smaller", NULL,
-          NULL },
-        { "set", 0, ADCGS_OPTION_STRING, &o->set, 0, 0, "NAME=VALUE,...",
-          "changes of the preset's settings; 'list' shows them all", names, NULL },
-        { "time-limit", 0, ADCGS_OPTION_SECONDS, &o->time_limit, 0, ADCGS_TIME_LIMIT_MAX, "S",
-          "time until training ends, seconds, load time included; the\n"
-          "result then depends on the machine's speed (default: no limit)",
-          NULL, NULL },
-        { "seed", 0, ADCGS_OPTION_SIZE, &o->seed, seed->min, seed->max, "N", "seed of every random choice (default 1)", NULL,
-          &o->has_seed },
-        { "checkpoint", 0, ADCGS_OPTION_FILE, &o->checkpoint, 0, 0, "FILE",
-          "file for the state of the run, saved every minute and when\n"
-          "interrupted (default then: the output's name.checkpoint)", NULL,
-          NULL },
-        { "checkpoint-every", 0, ADCGS_OPTION_SECONDS, &o->checkpoint_every, 0, 1e6, "S",
-          "interval of such saves, seconds (default 60)", NULL, NULL },
-        { "resume", 0, ADCGS_OPTION_FILE, &o->resume, 0, 0, "FILE",
-          "state to continue from; same scene, same options (with --live:\nthe output that a run has left)", NULL,
-          NULL },
-        { "finish", 0, ADCGS_OPTION_FILE, &o->finish, 0, 0, "FILE",
-          "state to make a stream of without more training; same scene,\nsame options", NULL, NULL },
-        { "beginning", 0, ADCGS_OPTION_FILE, &o->beginning, 0, 0, "FILE",
-          "file for the state up to which lambda has no effect; the run\nends there; runs with any lambda can --resume it", NULL,
-          NULL },
-        { "log", 0, ADCGS_OPTION_FILE, &o->log, 0, 0, "FILE",
-          "progress as JSON lines; appended with --resume, and by a\nplan's segments", NULL, NULL },
-        { "preview", 0, ADCGS_OPTION_FILE, &o->preview, 0, 0, "FILE",
-          "image (PNG, JPEG, ...) of a view as filmed and as rendered,\nupdated every 30 seconds",
-          NULL, NULL },
-        { "memory", 0, ADCGS_OPTION_SIZE, &o->memory, 1, 1e15, "BYTES",
-          "maximum memory of images, bytes (2G); the others are kept in\n"
-          "a file in TMPDIR (default: half of the machine's); no effect\non the result", NULL, NULL },
-        { "threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N",
-          "threads (default: one per CPU); no effect on the result", NULL, NULL },
-        { "cpu", 0, ADCGS_OPTION_CHOICE, &o->cpu, 0, 0, "LEVEL",
-          "kernels: auto, scalar, avx2, avx512 (default auto)", adcgs_cpu_names, NULL },
-        { "bf16", 0, ADCGS_OPTION_FLAG, &o->bf16, 0, 0, NULL,
-          "train the networks of the rendered values in bf16, which is\nfaster; needs a CPU with AVX512-BF16", NULL, NULL },
-        { "json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
+        {"output", 'o', ADCGS_OPTION_FILE, &o->output, 0, 0, "FILE", "stream to write (required, except with --beginning)", NULL,
+         NULL},
+        {"preset", 'p', ADCGS_OPTION_STRING, &o->preset, 0, 0, "NAME", "draft, fast, medium, slow or paper (default fast)",
+         adcgs_train_presets, NULL},
+        {"lambda", 'l', ADCGS_OPTION_REAL, &o->lambda, lambda->min, lambda->max, "X",
+         "loss per mebibyte of features and networks; a larger value\nmakes smaller files (default: the preset's, times the\n"
+         "images' contrast over 0.22)",
+         NULL, &o->has_lambda},
+        {"size", 's', ADCGS_OPTION_SIZE, &o->size, ADCGS_TARGET_SIZE_MIN, ADCGS_TARGET_SIZE_MAX, "BYTES",
+         "maximum file size, reached within 3 % (150k, 1.5M, 2MiB);\nreplaces --lambda", NULL, &o->has_size},
+        {"psnr", 0, ADCGS_OPTION_REAL, &o->psnr, ADCGS_TARGET_PSNR_MIN, ADCGS_TARGET_PSNR_MAX, "DB",
+         "target mean PSNR of the training views, decoded from the\nfile, dB, +/- 0.1; the file is as small as it allows; test\n"
+         "views are never used",
+         NULL, &o->has_psnr},
+        {"iterations", 'n', ADCGS_OPTION_INT, &o->iterations, iterations->min, iterations->max, "N",
+         "iterations of the run (default: the preset's)", NULL, &o->has_iterations},
+        {"scale", 0, ADCGS_OPTION_INT, &o->scale, scale->min, scale->max, "S",
+         "divisor of the image size, an integer (default: 1, more for\nimages of over 1600 pixels)", NULL, &o->has_scale},
+        {"k", 0, ADCGS_OPTION_INT, &o->k, k->min, k->max, "N", "primitives per anchor, 1 to 16 (default: the preset's)", NULL,
+         &o->has_k},
+        {"max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, anchors->min, anchors->max, "N",
+         "budget of anchors (default: from the amount of detail in\nthe images)", NULL, &o->has_max_anchors},
+        {"dataset", 0, ADCGS_OPTION_CHOICE, &o->dataset, 0, 0, "KIND",
+         "kind of the scene, instead of detecting it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs, splats\n"
+         "or panoptic",
+         adcgs_dataset_names, NULL},
+        {"frames", 0, ADCGS_OPTION_STRING, &o->frames, 0, 0, "A:B:STEP",
+         "frames A, A + STEP, ... below B of videos, or timestamps of\nimages, counted so; A, B or :STEP may be left out", NULL,
+         NULL},
+        {"fps", 0, ADCGS_OPTION_STRING, &o->fps, 0, 0, "N[/D]",
+         "rate of the selected frames, per second (default: the\nscene's, else 30)", NULL, NULL},
+        {"points", 0, ADCGS_OPTION_FILE, &o->points, 0, 0, "FILE",
+         "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL},
+        {"segment", 0, ADCGS_OPTION_SECONDS, &o->segment, 1e-3, 1e6, "S",
+         "length of segments, seconds, cut at the nearest timestamp;\n"
+         "each is trained from the previous one, in a run of its own;\n"
+         "with --plan: number of the only segment to train",
+         NULL, &o->has_segment},
+        {"plan", 0, ADCGS_OPTION_FILE, &o->plan, 0, 0, "FILE",
+         "plan of the segments, with all settings: written, or read\nwith --segment 1, 2, ..., which trains one part anywhere;\n"
+         "adcgs-join joins the parts",
+         NULL, NULL},
+        {"cut", 0, ADCGS_OPTION_SECONDS, &o->cut, 1e-3, 1e6, "S", "with --plan: length of segments, seconds (default 2)", NULL,
+         &o->has_cut},
+        {"key", 0, ADCGS_OPTION_SECONDS, &o->key, 0, 1e6, "S",
+         "with --segment: longest interval of key segments, which need\n"
+         "no other and where playback can begin, seconds (default 10)",
+         NULL, &o->has_key},
+        {"fade", 0, ADCGS_OPTION_SECONDS, &o->fade, 0, 1e6, "S",
+         "with --segment: crossfade from the previous segment, seconds,\n"
+         "at most a quarter of a segment (default 0.2; 0: none)",
+         NULL, &o->has_fade},
+        {"or-whole", 0, ADCGS_OPTION_FLAG, &o->or_whole, 0, 0, NULL,
+         "with --segment: also train one segment of the whole time,\nand write that if it is neither larger nor worse", NULL,
+         NULL},
+        {"live", 0, ADCGS_OPTION_FLAG, &o->live, 0, 0, NULL,
+         "train footage while it arrives: SCENE is a scene file, or a\n"
+         "folder with scene.json; segments, of 2 s or as --segment says,\n"
+         "are written when done; -o - writes to standard output; a\ncamera's video may be -, standard input",
+         NULL, NULL},
+        {"delay", 0, ADCGS_OPTION_SECONDS, &o->delay, 1e-3, 1e6, "S",
+         "with --live: maximum time from filming to writing, seconds;\neffort falls if needed (default: no limit)", NULL,
+         &o->has_delay},
+        {"without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
+         "parts to leave out: coarse, fine, deformation (both), rate,\n"
+         "densification, anchors, removal or weight_steps",
+         NULL, NULL},
+        {"uncompressed", 0, ADCGS_OPTION_FILE, &o->uncompressed, 0, 0, "FILE",
+         "file for the model as plain binary32 numbers, trained\nwithout rate and rounding; the stream is then the finest", NULL,
+         NULL},
+        {"fixed", 0, ADCGS_OPTION_FLAG, &o->fixed, 0, 0, NULL, "model size from the preset alone, not from the scene", NULL,
+         NULL},
+        {"no-progression", 0, ADCGS_OPTION_FLAG, &o->no_progression, 0, 0, NULL,
+         "all anchors at once, instead of tiers that each add detail\nto the previous ones; a few percent smaller", NULL, NULL},
+        {"set", 0, ADCGS_OPTION_STRING, &o->set, 0, 0, "NAME=VALUE,...",
+         "changes of the preset's settings; 'list' shows them all", names, NULL},
+        {"time-limit", 0, ADCGS_OPTION_SECONDS, &o->time_limit, 0, ADCGS_TIME_LIMIT_MAX, "S",
+         "time until training ends, seconds, load time included; the\n"
+         "result then depends on the machine's speed (default: no limit)",
+         NULL, NULL},
+        {"seed", 0, ADCGS_OPTION_SIZE, &o->seed, seed->min, seed->max, "N", "seed of every random choice (default 1)", NULL,
+         &o->has_seed},
+        {"checkpoint", 0, ADCGS_OPTION_FILE, &o->checkpoint, 0, 0, "FILE",
+         "file for the state of the run, saved every minute and when\n"
+         "interrupted (default then: the output's name.checkpoint)",
+         NULL, NULL},
+        {"checkpoint-every", 0, ADCGS_OPTION_SECONDS, &o->checkpoint_every, 0, 1e6, "S",
+         "interval of such saves, seconds (default 60)", NULL, NULL},
+        {"resume", 0, ADCGS_OPTION_FILE, &o->resume, 0, 0, "FILE",
+         "state to continue from; same scene, same options (with --live:\nthe output that a run has left)", NULL, NULL},
+        {"finish", 0, ADCGS_OPTION_FILE, &o->finish, 0, 0, "FILE",
+         "state to make a stream of without more training; same scene,\nsame options", NULL, NULL},
+        {"beginning", 0, ADCGS_OPTION_FILE, &o->beginning, 0, 0, "FILE",
+         "file for the state up to which lambda has no effect; the run\nends there; runs with any lambda can --resume it", NULL,
+         NULL},
+        {"log", 0, ADCGS_OPTION_FILE, &o->log, 0, 0, "FILE",
+         "progress as JSON lines; appended with --resume, and by a\nplan's segments", NULL, NULL},
+        {"preview", 0, ADCGS_OPTION_FILE, &o->preview, 0, 0, "FILE",
+         "image (PNG, JPEG, ...) of a view as filmed and as rendered,\nupdated every 30 seconds", NULL, NULL},
+        {"memory", 0, ADCGS_OPTION_SIZE, &o->memory, 1, 1e15, "BYTES",
+         "maximum memory of images, bytes (2G); the others are kept in\n"
+         "a file in TMPDIR (default: half of the machine's); no effect\non the result",
+         NULL, NULL},
+        {"threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N", "threads (default: one per CPU); no effect on the result",
+         NULL, NULL},
+        {"cpu", 0, ADCGS_OPTION_CHOICE, &o->cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)",
+         adcgs_cpu_names, NULL},
+        {"bf16", 0, ADCGS_OPTION_FLAG, &o->bf16, 0, 0, NULL,
+         "train the networks of the rendered values in bf16, which is\nfaster; needs a CPU with AVX512-BF16", NULL, NULL},
+        {"json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL},
     };
     cli->options = options;
     cli->n_options = ADCGS_COUNTOF(options);
@@ -518,12 +535,13 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     if (o->has_cut)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--cut needs --plan");
     if (!o->output == !o->beginning)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --beginning FILE" :
-                                                                  "no output: give -o FILE");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
+                               o->output ? "give either -o FILE or --beginning FILE" : "no output: give -o FILE");
     if (o->has_lambda + o->has_size + o->has_psnr > 1)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
     if (o->finish && (o->resume || o->beginning || o->checkpoint || o->has_segment || o->live || o->time_limit > 0))
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--finish excludes --resume, --beginning, --checkpoint, --segment, --live "
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
+                               "--finish excludes --resume, --beginning, --checkpoint, --segment, --live "
                                "and --time-limit");
     if (o->live)
         return check_live(cli, o);
@@ -531,7 +549,9 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay needs --live");
     if ((o->has_key || o->has_fade || o->or_whole) && !o->has_segment)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s needs --segment",
-                               o->has_key ? "key" : o->has_fade ? "fade" : "or-whole");
+                               o->has_key    ? "key"
+                               : o->has_fade ? "fade"
+                                             : "or-whole");
     if (o->has_segment && (o->has_size || o->beginning || o->uncompressed || o->time_limit > 0))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment excludes --size, --beginning, --uncompressed and --time-limit");
     return -1;
@@ -545,7 +565,7 @@ static adcgs_status run_program(const adcgs_cli *cli, adcgs_enc_options *o, cons
     if (ranks->size && !o->threads)
         o->threads = adcgs_enc_ranks_threads(ranks);
     if (ranks->rank && !o->has_segment)
-        o->quiet = 1; /* rank 0 reports for all */
+        o->quiet = 1;            /* rank 0 reports for all */
     if (ranks->rank && o->log) { /* a log has one writer */
         snprintf(log, sizeof log, "%s.%d", o->log, ranks->rank);
         o->log = log;
@@ -561,14 +581,17 @@ static adcgs_status run_program(const adcgs_cli *cli, adcgs_enc_options *o, cons
 
 int main(int argc, char **argv)
 {
-    adcgs_enc_options o = { .preset = "fast", .fade = ADCGS_ENC_FADE, .cut = ADCGS_ENC_LIVE_SEGMENT, .checkpoint_every = 60,
-                            .started = adcgs_time_now() };
+    adcgs_enc_options o = {.preset = "fast",
+                           .fade = ADCGS_ENC_FADE,
+                           .cut = ADCGS_ENC_LIVE_SEGMENT,
+                           .checkpoint_every = 60,
+                           .started = adcgs_time_now()};
     adcgs_cli cli = program;
     const int code = parse(&cli, &o, argc, argv);
     if (code >= 0)
         return code;
-    adcgs_error error = { ADCGS_OK, "" };
-    adcgs_ranks ranks = { .size = 0 };
+    adcgs_error error = {ADCGS_OK, ""};
+    adcgs_ranks ranks = {.size = 0};
     int met = 1;
     adcgs_status status = o.plan || adcgs_ranks_expected() == 1 ? ADCGS_OK : adcgs_ranks_open(&ranks, &error);
     if (status == ADCGS_OK)

@@ -49,20 +49,20 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          "kind of the scene, instead of detecting it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs, splats\n"
          "or panoptic",
          adcgs_dataset_names, NULL},
-        {"frames", 0, ADCGS_OPTION_STRING, &s->frames, 0, 0, "A:B:STEP",
-         "frames that the stream was made of, as for adcgs-enc", NULL, NULL},
-        {"scale", 0, ADCGS_OPTION_INT, &s->scale, 1, 64, "S",
-         "divisor of the image size for the measurement, an integer\n(default: as for the stream's training)", NULL,
-         NULL},
-        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
-        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "tiers of the stream to render; fewer give a coarser image",
+        {"frames", 0, ADCGS_OPTION_STRING, &s->frames, 0, 0, "A:B:STEP", "frames that the stream was made of, as for adcgs-enc",
          NULL, NULL},
+        {"scale", 0, ADCGS_OPTION_INT, &s->scale, 1, 64, "S",
+         "divisor of the image size for the measurement, an integer\n(default: as for the stream's training)", NULL, NULL},
+        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
+        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "tiers of the stream to render; fewer give a coarser image", NULL,
+         NULL},
         {"images", 0, ADCGS_OPTION_FILE, &s->images, 0, 0, "DIR", "folder for the decoded views as PNG", NULL, NULL},
         {"beside", 0, ADCGS_OPTION_FLAG, &s->beside, 0, 0, NULL,
          "in these images: ground truth, decoded view, and four times\ntheir difference round grey, side by side", NULL, NULL},
         {"crop", 0, ADCGS_OPTION_STRING, &s->crop, 0, 0, "BOX",
          "region to measure in addition, the visible part of the box\n"
-         "X0,Y0,Z0,X1,Y1,Z1; points: a box round the initial points", NULL, NULL},
+         "X0,Y0,Z0,X1,Y1,Z1; points: a box round the initial points",
+         NULL, NULL},
         {"scene-background", 0, ADCGS_OPTION_FLAG, &s->as_is, 0, 0, NULL,
          "composite images with alpha onto the scene's background\ninstead of the stream's", NULL, NULL},
         {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads (default: one per CPU)", NULL, NULL},
@@ -72,8 +72,7 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          "metrics in addition to PSNR and SSIM: all, or a list of\nfitted-psnr, ms-ssim, dynamic-psnr,\n"
          "fitted-dynamic-psnr, static-variance and flicker",
          NULL, NULL},
-        {"csv", 0, ADCGS_OPTION_FILE, &s->csv, 0, 0, "FILE", "table with a row for each view; - prints it", NULL,
-         NULL},
+        {"csv", 0, ADCGS_OPTION_FILE, &s->csv, 0, 0, "FILE", "table with a row for each view; - prints it", NULL, NULL},
         {"json", 0, ADCGS_OPTION_FLAG, &s->json, 0, 0, NULL, "print one JSON object", NULL, NULL},
     };
     memcpy(options, table, sizeof table);
@@ -177,8 +176,9 @@ static void choose_size(const settings *s, adcgs_decoder *decoder, adcgs_scene *
 {
     scene->measured = s->scale ? s->scale : scale_of(decoder);
     if (!s->scale && scene->measured > 1)
-        adcgs_cli_note(s->cli, "%s: trained on images of 1/%d of the size, and measured on the same; --scale 1 measures at full "
-                               "size",
+        adcgs_cli_note(s->cli,
+                       "%s: trained on images of 1/%d of the size, and measured on the same; --scale 1 measures at full "
+                       "size",
                        s->file, scene->measured);
 }
 
@@ -227,8 +227,13 @@ static adcgs_status decode_and_compare(report *r, adcgs_error *error)
 static adcgs_status run(const settings *s, adcgs_error *error)
 {
     report r = {.set = s, .box = s->box};
-    r.out = (adcgs_eval_report){.file = s->file, .scene = s->scene, .split = splits[s->split], .csv = s->csv,
-                                .measure = s->measure, .as_json = s->json, .box = s->crop ? &r.box : NULL};
+    r.out = (adcgs_eval_report){.file = s->file,
+                                .scene = s->scene,
+                                .split = splits[s->split],
+                                .csv = s->csv,
+                                .measure = s->measure,
+                                .as_json = s->json,
+                                .box = s->crop ? &r.box : NULL};
     ADCGS_TRY(check_operands(s, error));
     if (s->images && mkdir(s->images, 0777) && errno != EEXIST)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", s->images, strerror(errno));

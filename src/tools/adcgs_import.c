@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define FRAMES 300  /* default number of frames of a moving camera */
+#define FRAMES 300 /* default number of frames of a moving camera */
 #define TEST_EVERY 8
 
 /* Thresholds of the warnings about poses. SPREAD_FINE: poses of a static camera, as a share of the rig's size. */
@@ -71,19 +71,24 @@ static void warn(const adcgs_cli *cli, const adcgs_import_report *r)
     if (r->found < r->cameras)
         adcgs_cli_note(cli, "no pose found for %u of %u cameras, which are left out", r->cameras - r->found, r->cameras);
     else if (!r->cameras && r->posed < POSED_WELL * r->pictures)
-        adcgs_cli_note(cli, "no pose found for %u of %u images, which are left out: take sharper images with more overlap, or "
-                            "more --frames of a video", r->pictures - r->posed, r->pictures);
+        adcgs_cli_note(cli,
+                       "no pose found for %u of %u images, which are left out: take sharper images with more overlap, or "
+                       "more --frames of a video",
+                       r->pictures - r->posed, r->pictures);
     if (r->models > 1)
         adcgs_cli_note(cli, "the images form %u scenes that share no points: the largest was taken", r->models);
     if (r->error > ERROR_FINE)
-        adcgs_cli_note(cli, "points are %.1f pixels off on average, expected less than %g: poses or lens are inexact; try "
-                            "another --lens, or mask moving regions", r->error, ERROR_FINE);
+        adcgs_cli_note(cli,
+                       "points are %.1f pixels off on average, expected less than %g: poses or lens are inexact; try "
+                       "another --lens, or mask moving regions",
+                       r->error, ERROR_FINE);
     if (r->track < TRACK_FINE)
         adcgs_cli_note(cli, "a point is in %.1f images on average, expected %g or more: take images with more overlap", r->track,
                        TRACK_FINE);
     if (r->spread > SPREAD_FINE)
-        adcgs_cli_note(cli, "a camera's poses at different times are %.1f %% of the rig's size apart: check that the cameras "
-                            "stand still",
+        adcgs_cli_note(cli,
+                       "a camera's poses at different times are %.1f %% of the rig's size apart: check that the cameras "
+                       "stand still",
                        100.0 * r->spread);
     if (r->is_numbered)
         adcgs_cli_note(cli, "the images' names are plain numbers: if they are frames of a video, --fps N keeps their times; "
@@ -108,25 +113,62 @@ static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
     static const char *const lenses[] = {"radial", "pinhole", "opencv", "fisheye", NULL};
     adcgs_import_options *o = &a->import;
     const adcgs_option options[] = {
-        {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &o->output, .value = "FOLDER",
+        {.name = "output",
+         .letter = 'o',
+         .kind = ADCGS_OPTION_STRING,
+         .target = &o->output,
+         .value = "FOLDER",
          .help = "folder of the scene, which is created (required)"},
-        {.name = "fps", .kind = ADCGS_OPTION_STRING, .target = &a->fps, .value = "N[/D]",
+        {.name = "fps",
+         .kind = ADCGS_OPTION_STRING,
+         .target = &a->fps,
+         .value = "N[/D]",
          .help = "frames per second, if images are frames of a film, in the\norder of their names (default: all of one time)"},
-        {.name = "frames", .kind = ADCGS_OPTION_INT, .target = &o->frames, .min = 3, .max = 10000, .value = "N",
+        {.name = "frames",
+         .kind = ADCGS_OPTION_INT,
+         .target = &o->frames,
+         .min = 3,
+         .max = 10000,
+         .value = "N",
          .help = "number of frames of a moving camera, at most, taken evenly\n(default 300)"},
-        {.name = "side", .kind = ADCGS_OPTION_INT, .target = &o->side, .min = 64, .max = 16384, .value = "PIXELS",
+        {.name = "side",
+         .kind = ADCGS_OPTION_INT,
+         .target = &o->side,
+         .min = 64,
+         .max = 16384,
+         .value = "PIXELS",
          .help = "maximum width and height of images, pixels; larger images\nare reduced (default 1600)"},
-        {.name = "masks", .kind = ADCGS_OPTION_STRING, .target = &o->masks, .value = "FOLDER",
+        {.name = "masks",
+         .kind = ADCGS_OPTION_STRING,
+         .target = &o->masks,
+         .value = "FOLDER",
          .help = "folder of masks with the images' or the cameras' names:\nblack regions are neither matched nor trained"},
-        {.name = "lens", .kind = ADCGS_OPTION_CHOICE, .target = &o->lens, .choices = lenses, .value = "KIND",
+        {.name = "lens",
+         .kind = ADCGS_OPTION_CHOICE,
+         .target = &o->lens,
+         .choices = lenses,
+         .value = "KIND",
          .help = "radial, pinhole, opencv or fisheye (default radial)"},
-        {.name = "own-lens", .kind = ADCGS_OPTION_FLAG, .target = &o->own_lens,
-         .help = "an own lens for each camera of a rig"},
-        {.name = "test", .kind = ADCGS_OPTION_INT, .target = &o->test_every, .min = 0, .max = 10000, .value = "N",
+        {.name = "own-lens", .kind = ADCGS_OPTION_FLAG, .target = &o->own_lens, .help = "an own lens for each camera of a rig"},
+        {.name = "test",
+         .kind = ADCGS_OPTION_INT,
+         .target = &o->test_every,
+         .min = 0,
+         .max = 10000,
+         .value = "N",
          .help = "interval of the views, or static cameras, kept for testing\n(default 8; 0: none)"},
-        {.name = "colmap", .kind = ADCGS_OPTION_STRING, .target = &o->colmap, .value = "PROGRAM",
+        {.name = "colmap",
+         .kind = ADCGS_OPTION_STRING,
+         .target = &o->colmap,
+         .value = "PROGRAM",
          .help = "COLMAP's program (default: colmap on the path)"},
-        {.name = "threads", .letter = 't', .kind = ADCGS_OPTION_INT, .target = &o->threads, .min = 0, .max = 256, .value = "N",
+        {.name = "threads",
+         .letter = 't',
+         .kind = ADCGS_OPTION_INT,
+         .target = &o->threads,
+         .min = 0,
+         .max = 256,
+         .value = "N",
          .help = "threads of COLMAP (default: one per CPU)"},
         {.name = "json", .kind = ADCGS_OPTION_FLAG, .target = &a->json, .help = "print the result as one JSON object on stdout"},
     };
@@ -143,8 +185,10 @@ static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
     if (!o->output || !*o->output)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "no output: give -o FOLDER");
     if (a->fps && adcgs_fps_parse(a->fps, &o->fps))
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
-                               "30000/1001", a->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
+                               "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
+                               "30000/1001",
+                               a->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
     return -1;
 }
 

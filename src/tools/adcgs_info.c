@@ -29,7 +29,7 @@ typedef struct settings {
 
 static void add_chunk(adcgs_info_report *r, uint64_t bit, const char *type)
 {
-    adcgs_info_chunk c = { .offset = bit / 8 };
+    adcgs_info_chunk c = {.offset = bit / 8};
     snprintf(c.type, sizeof c.type, "%s", type);
     if (r->n_chunks == r->capacity) {
         const size_t capacity = r->capacity ? 2 * r->capacity : 64;
@@ -67,9 +67,9 @@ typedef struct origin {
 
 static adcgs_status open_origin(origin *from, const char *input, adcgs_error *error)
 {
-    *from = (origin){ .file = NULL };
+    *from = (origin){.file = NULL};
     if (adcgs_is_url(input))
-        return adcgs_http_open(&from->http, input, &(adcgs_http_config){ .limit = 0 }, error);
+        return adcgs_http_open(&from->http, input, &(adcgs_http_config){.limit = 0}, error);
     from->file = strcmp(input, "-") ? fopen(input, "rb") : stdin;
     return from->file ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", input, strerror(errno));
 }
@@ -83,7 +83,7 @@ static void close_origin(origin *from)
 
 static adcgs_status read_report(adcgs_info_report *r, const settings *s, adcgs_error *error)
 {
-    adcgs_read_options options = { .layers = 0 };
+    adcgs_read_options options = {.layers = 0};
     origin from;
     ADCGS_TRY(adcgs_kind_check(s->input, ADCGS_WANT_STREAM, error));
     ADCGS_TRY(open_origin(&from, s->input, error));
@@ -228,8 +228,8 @@ static adcgs_status write_points(const adcgs_info_report *r, const char *path, a
     if (status == ADCGS_OK && adcgs_offset_is(offset))
         fprintf(stderr,
                 "adcgs-info: %s: the scene is too far from the origin for binary32: %.17g %.17g %.17g was subtracted from "
-                "positions\n", path,
-                offset[0], offset[1], offset[2]);
+                "positions\n",
+                path, offset[0], offset[1], offset[2]);
     adcgs_points_free(&points);
     return status;
 }
@@ -272,33 +272,36 @@ static int check(const adcgs_cli *cli, const settings *s, adcgs_error *error)
 
 int main(int argc, char **argv)
 {
-    settings s = { .input = NULL };
+    settings s = {.input = NULL};
     const adcgs_option options[] = {
-        { "json", 'j', ADCGS_OPTION_FLAG, &s.json, 0, 0, NULL, "print one JSON object", NULL, NULL },
-        { "bits", 'b', ADCGS_OPTION_FLAG, &s.bits, 0, 0, NULL, "list every chunk with its bits", NULL, NULL },
-        { "trace", 't', ADCGS_OPTION_FLAG, &s.trace, 0, 0, NULL,
-          "print bit position, name and value of every syntax\nelement", NULL, NULL },
-        { "digest", 'd', ADCGS_OPTION_FLAG, &s.digest, 0, 0, NULL, "print the digest of each segment's model", NULL, NULL },
-        { "why", 'w', ADCGS_OPTION_FLAG, &s.why, 0, 0, NULL, "explain the size of the stream", NULL, NULL },
-        { "points", 0, ADCGS_OPTION_FILE, &s.points, 0, 0, "FILE",
-          "file for the anchors' positions and colours, .ply or\n.drc (Draco), instead of a report", NULL, NULL },
-        { "check", 0, ADCGS_OPTION_FLAG, &s.check, 0, 0, NULL, "list all faults of a file and its usable parts", NULL,
-          NULL },
-        { "repair", 0, ADCGS_OPTION_FILE, &s.repair, 0, 0, "FILE", "like --check, and write the usable parts to this file", NULL,
-          NULL },
-        { "bytes", 0, ADCGS_OPTION_SIZE, &s.bytes, 1, 1e12, "N",
-          "maximum size of a stream written to --output (40k); as\nmany of the finest tiers as necessary are left out", NULL,
-          &s.has_bytes },
-        { "output", 'o', ADCGS_OPTION_FILE, &s.output, 0, 0, "FILE", "file that --bytes writes", NULL, NULL },
+        {"json", 'j', ADCGS_OPTION_FLAG, &s.json, 0, 0, NULL, "print one JSON object", NULL, NULL},
+        {"bits", 'b', ADCGS_OPTION_FLAG, &s.bits, 0, 0, NULL, "list every chunk with its bits", NULL, NULL},
+        {"trace", 't', ADCGS_OPTION_FLAG, &s.trace, 0, 0, NULL, "print bit position, name and value of every syntax\nelement",
+         NULL, NULL},
+        {"digest", 'd', ADCGS_OPTION_FLAG, &s.digest, 0, 0, NULL, "print the digest of each segment's model", NULL, NULL},
+        {"why", 'w', ADCGS_OPTION_FLAG, &s.why, 0, 0, NULL, "explain the size of the stream", NULL, NULL},
+        {"points", 0, ADCGS_OPTION_FILE, &s.points, 0, 0, "FILE",
+         "file for the anchors' positions and colours, .ply or\n.drc (Draco), instead of a report", NULL, NULL},
+        {"check", 0, ADCGS_OPTION_FLAG, &s.check, 0, 0, NULL, "list all faults of a file and its usable parts", NULL, NULL},
+        {"repair", 0, ADCGS_OPTION_FILE, &s.repair, 0, 0, "FILE", "like --check, and write the usable parts to this file", NULL,
+         NULL},
+        {"bytes", 0, ADCGS_OPTION_SIZE, &s.bytes, 1, 1e12, "N",
+         "maximum size of a stream written to --output (40k); as\nmany of the finest tiers as necessary are left out", NULL,
+         &s.has_bytes},
+        {"output", 'o', ADCGS_OPTION_FILE, &s.output, 0, 0, "FILE", "file that --bytes writes", NULL, NULL},
     };
-    const adcgs_cli cli = { .program = "adcgs-info", .operands = "FILE|URL|-",
-                            .summary = "Print the contents of an adcgs stream and the bytes of its parts.", .options = options,
-                            .n_options = ADCGS_COUNTOF(options), .min_operands = 1, .max_operands = 1 };
-    adcgs_error error = { ADCGS_OK, "" };
+    const adcgs_cli cli = {.program = "adcgs-info",
+                           .operands = "FILE|URL|-",
+                           .summary = "Print the contents of an adcgs stream and the bytes of its parts.",
+                           .options = options,
+                           .n_options = ADCGS_COUNTOF(options),
+                           .min_operands = 1,
+                           .max_operands = 1};
+    adcgs_error error = {ADCGS_OK, ""};
     int first, code = adcgs_cli_parse(&cli, argc, argv, &first);
     if (code >= 0)
         return code;
-    adcgs_info_report r = { .trace = 0 };
+    adcgs_info_report r = {.trace = 0};
     s.input = argv[first];
     r.trace = s.trace && !s.json;
     if (s.why && (s.json || s.bits || s.trace || s.digest || s.points || s.check || s.repair || s.has_bytes))

@@ -67,7 +67,11 @@ static adcgs_status list(const join_job *j, int *code, adcgs_error *error)
             *code = 1;
         }
         printf("%u %u %s %.0f\n", i + 1, follows ? i : 0,
-               status != ADCGS_OK ? "bad" : found ? "done" : waits ? "waits" : has_begun(j, i) ? "begun" : "ready",
+               status != ADCGS_OK ? "bad"
+               : found            ? "done"
+               : waits            ? "waits"
+               : has_begun(j, i)  ? "begun"
+                                  : "ready",
                j->plan.segments[i].cost);
         before = status == ADCGS_OK && found;
     }
@@ -157,12 +161,13 @@ static const adcgs_cli program = {
 static int parse(adcgs_cli *cli, join_options *o, int argc, char **argv)
 {
     const adcgs_option options[] = {
-        { "output", 'o', ADCGS_OPTION_FILE, &o->output, 0, 0, "FILE", "stream to write", NULL, NULL },
-        { "list", 0, ADCGS_OPTION_FLAG, &o->list, 0, 0, NULL,
-          "print a line for each segment instead: its number, the number\n"
-          "of the segment it is trained from (0: none), its state (done,\n"
-          "begun, ready, waits for the other, or bad), and its cost in\nseconds", NULL, NULL },
-        { "threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N", "threads (default: one per CPU)", NULL, NULL },
+        {"output", 'o', ADCGS_OPTION_FILE, &o->output, 0, 0, "FILE", "stream to write", NULL, NULL},
+        {"list", 0, ADCGS_OPTION_FLAG, &o->list, 0, 0, NULL,
+         "print a line for each segment instead: its number, the number\n"
+         "of the segment it is trained from (0: none), its state (done,\n"
+         "begun, ready, waits for the other, or bad), and its cost in\nseconds",
+         NULL, NULL},
+        {"threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N", "threads (default: one per CPU)", NULL, NULL},
     };
     int first;
     cli->options = options;
@@ -180,13 +185,13 @@ static int parse(adcgs_cli *cli, join_options *o, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    join_options o = { .plan = NULL };
+    join_options o = {.plan = NULL};
     adcgs_cli cli = program;
     int code = parse(&cli, &o, argc, argv);
     if (code >= 0)
         return code;
-    adcgs_error error = { ADCGS_OK, "" };
-    join_job job = { .cli = &cli, .o = &o };
+    adcgs_error error = {ADCGS_OK, ""};
+    join_job job = {.cli = &cli, .o = &o};
     code = 0;
     const adcgs_status status = run(&job, &code, &error);
     adcgs_plan_clear(&job.plan);

@@ -98,19 +98,33 @@ int main(int argc, char **argv)
 {
     settings s = {.page = PAGE_FILE};
     const adcgs_option options[] = {
-        {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &s.output, .value = "PAGE.html",
+        {.name = "output",
+         .letter = 'o',
+         .kind = ADCGS_OPTION_STRING,
+         .target = &s.output,
+         .value = "PAGE.html",
          .help = "page to write"},
-        {.name = "title", .kind = ADCGS_OPTION_STRING, .target = &s.title, .value = "TEXT",
+        {.name = "title",
+         .kind = ADCGS_OPTION_STRING,
+         .target = &s.title,
+         .value = "TEXT",
          .help = "title of the page (default: the file's name)"},
-        {.name = "page", .kind = ADCGS_OPTION_STRING, .target = &s.page, .value = "FILE",
+        {.name = "page",
+         .kind = ADCGS_OPTION_STRING,
+         .target = &s.page,
+         .value = "FILE",
          .help = "page that receives the scene, by default the installed one:\n" PAGE_FILE},
     };
-    const adcgs_cli cli = {.program = "adcgs-share", .operands = "[FILE]",
+    const adcgs_cli cli = {.program = "adcgs-share",
+                           .operands = "[FILE]",
                            .summary = "Make a page for browsers of a stream: one file with the decoder and the scene.",
                            .details = "Without FILE the page has no scene: it shows files that are dropped on it,\n"
                                       "and, on a web server, the stream of ?src=URL.\n"
                                       "Exit status: 0 done, 2 usage, 3 input or output, 4 invalid stream or page, 5 unsupported.",
-                           .options = options, .n_options = ADCGS_COUNTOF(options), .min_operands = 0, .max_operands = 1,
+                           .options = options,
+                           .n_options = ADCGS_COUNTOF(options),
+                           .min_operands = 0,
+                           .max_operands = 1,
                            .quiet = &s.quiet};
     int first;
     s.cli = &cli;

@@ -235,8 +235,7 @@ static adcgs_status answer_splats(const adcgs_request *q, adcgs_decoder *decoder
 }
 
 /* Instead of a digest, a camera that the specification refuses gets the word "refused", a frame beyond its limit "declined". */
-static adcgs_status answer_frame(const adcgs_request *q, const adcgs_camera *camera, adcgs_decoder *decoder,
-                                 adcgs_error *error)
+static adcgs_status answer_frame(const adcgs_request *q, const adcgs_camera *camera, adcgs_decoder *decoder, adcgs_error *error)
 {
     const int32_t w = camera->width, h = camera->height;
     const int sane = w >= 1 && w <= 16384 && h >= 1 && h <= 16384;

@@ -19,9 +19,9 @@ typedef enum adcgs_request_kind {
 
 typedef struct adcgs_request {
     adcgs_request_kind kind;
-    int camera;      /**< of FRAME */
-    double time;     /**< seconds; of SPLATS and FRAME */
-    char text[64];   /**< the time as written in the file; the answer repeats it */
+    int camera;    /**< of FRAME */
+    double time;   /**< seconds; of SPLATS and FRAME */
+    char text[64]; /**< the time as written in the file; the answer repeats it */
 } adcgs_request;
 
 typedef struct adcgs_requests {
@@ -36,8 +36,7 @@ typedef struct adcgs_requests {
 adcgs_status adcgs_requests_read(adcgs_requests *out, const char *path, adcgs_error *error);
 void adcgs_requests_clear(adcgs_requests *requests);
 /** Prints the answers. decoder has decoded the file at path, which is read again for a trace. */
-adcgs_status adcgs_requests_answer(const adcgs_requests *requests, const char *path, adcgs_decoder *decoder,
-                                   adcgs_error *error);
+adcgs_status adcgs_requests_answer(const adcgs_requests *requests, const char *path, adcgs_decoder *decoder, adcgs_error *error);
 /** Returns the protocol's class of a decoding status, NULL if the status is not about the stream. */
 const char *adcgs_fault_class(adcgs_status status);
 

@@ -53,19 +53,19 @@ static void remove_background(adcgs_canvas *canvas)
 }
 
 adcgs_status adcgs_canvas_finish(adcgs_canvas *canvas, adcgs_decoder *decoder, adcgs_decoder *beside,
-                                 const adcgs_camera_frame *frame,
-                                 adcgs_error *error)
+                                 const adcgs_camera_frame *frame, adcgs_error *error)
 {
     canvas->extras = (adcgs_sink_extras){canvas->alpha, canvas->depth, &frame->camera, frame->time};
     if (canvas->alpha || canvas->depth)
-        ADCGS_TRY(adcgs_camera_path_rendered(
-            &frame->camera,
-            adcgs_render_depth(decoder, &frame->camera, frame->time, canvas->depth, canvas->alpha, error), error));
+        ADCGS_TRY(adcgs_camera_path_rendered(&frame->camera,
+                                             adcgs_render_depth(decoder, &frame->camera, frame->time, canvas->depth,
+                                                                canvas->alpha, error),
+                                             error));
     if (canvas->alpha)
         remove_background(canvas);
     if (beside) {
         ADCGS_TRY(adcgs_camera_path_rendered(&frame->camera,
-                                       adcgs_render(beside, &frame->camera, frame->time, &canvas->second, error), error));
+                                             adcgs_render(beside, &frame->camera, frame->time, &canvas->second, error), error));
         canvas->extras = (adcgs_sink_extras){0}; /* two images have no common camera */
         adcgs_mosaic_place(&canvas->mosaic, 0, 0, (adcgs_samples){canvas->frame.rgb, 3, 1});
         adcgs_mosaic_place(&canvas->mosaic, 1, 0, (adcgs_samples){canvas->second.rgb, 3, 1});

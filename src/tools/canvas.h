@@ -13,7 +13,7 @@ typedef struct adcgs_canvas {
     adcgs_sink_extras extras; /**< output in addition to the colours */
     float *alpha, *depth;     /**< of the frame's size, or NULL */
     float background[3];
-    adcgs_frame second;       /**< of the second stream; without pixels if there is none */
+    adcgs_frame second; /**< of the second stream; without pixels if there is none */
     adcgs_mosaic mosaic;
 } adcgs_canvas;
 
@@ -23,7 +23,6 @@ adcgs_status adcgs_canvas_init(adcgs_canvas *canvas, const int size[2], const ad
 void adcgs_canvas_clear(adcgs_canvas *canvas);
 /** Completes the output after canvas->frame has been rendered. It may change the frame's values. beside may be NULL. */
 adcgs_status adcgs_canvas_finish(adcgs_canvas *canvas, adcgs_decoder *decoder, adcgs_decoder *beside,
-                                 const adcgs_camera_frame *frame,
-                                 adcgs_error *error);
+                                 const adcgs_camera_frame *frame, adcgs_error *error);
 
 #endif

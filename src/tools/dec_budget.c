@@ -39,7 +39,7 @@ static int64_t read_some(void *user, void *buffer, size_t bytes)
 adcgs_status adcgs_budget_open(adcgs_decoder **decoder, const adcgs_budget *budget, adcgs_read_fn read, void *user,
                                const adcgs_config *config, adcgs_error *error)
 {
-    source from = { read, user, budget->most };
+    source from = {read, user, budget->most};
     return adcgs_open_stream(decoder, read_some, &from, config, error);
 }
 

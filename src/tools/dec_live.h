@@ -13,7 +13,7 @@ typedef struct adcgs_live {
     adcgs_decoder *decoder; /**< owned by the caller */
     uint8_t *buffer;        /**< read and not yet decoded: n bytes, from `at` on */
     size_t at, n;
-    int over;               /**< nothing more arrives: the stream or the bytes have ended */
+    int over; /**< nothing more arrives: the stream or the bytes have ended */
 } adcgs_live;
 
 /**

@@ -13,8 +13,8 @@
 static adcgs_status open_in_order(adcgs_decoder **decoder, adcgs_read_fn read, void *user, const adcgs_dec_open_config *how,
                                   adcgs_error *error)
 {
-    return how->budget->of == ADCGS_BUDGET_BYTES ? adcgs_budget_open(decoder, how->budget, read, user, how->config, error) :
-                                                   adcgs_open_stream(decoder, read, user, how->config, error);
+    return how->budget->of == ADCGS_BUDGET_BYTES ? adcgs_budget_open(decoder, how->budget, read, user, how->config, error)
+                                                 : adcgs_open_stream(decoder, read, user, how->config, error);
 }
 
 /** Opens the bytes of a file that the budget allows. */
@@ -55,8 +55,8 @@ static adcgs_status open_url(adcgs_decoder **decoder, adcgs_http **http, const c
     const uint64_t size = adcgs_http_size(*http);
     if (config.any_order && !size)
         adcgs_cli_note(how->cli, "%s: the server supports no ranges: reading the whole stream", input);
-    adcgs_status status = size ? adcgs_open_at(decoder, adcgs_http_read_at, *http, size, how->config, error) :
-                                 open_in_order(decoder, adcgs_http_read, *http, how, error);
+    adcgs_status status = size ? adcgs_open_at(decoder, adcgs_http_read_at, *http, size, how->config, error)
+                               : open_in_order(decoder, adcgs_http_read, *http, how, error);
     if (status == ADCGS_OK && size)
         return ADCGS_OK; /* the connection stays open for the decoder */
     if (status != ADCGS_OK)
@@ -95,7 +95,7 @@ adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_http **http, const ch
     if (adcgs_is_url(input))
         return how->config->conceal ? open_whole(decoder, input, how, error) : open_url(decoder, http, input, how, error);
     if (strcmp(input, "-"))
-        return how->budget->of == ADCGS_BUDGET_BYTES ? open_part(decoder, input, how, error) :
-                                                       adcgs_open_file(decoder, input, how->config, error);
+        return how->budget->of == ADCGS_BUDGET_BYTES ? open_part(decoder, input, how, error)
+                                                     : adcgs_open_file(decoder, input, how->config, error);
     return open_pipe(decoder, how, error);
 }

@@ -119,9 +119,9 @@ static adcgs_status play(const adcgs_dec_play *how, adcgs_play_settings *setting
 static adcgs_status play_file(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
 {
     uint8_t *data;
-    ADCGS_TRY(adcgs_is_url(how->input) ?
-                  adcgs_http_load(&data, &settings->source.bytes, how->input, adcgs_salvage_bytes, adcgs_interrupted, error) :
-                  adcgs_file_load(&data, &settings->source.bytes, how->input, STREAM_BYTES_MAX, error));
+    ADCGS_TRY(adcgs_is_url(how->input)
+                  ? adcgs_http_load(&data, &settings->source.bytes, how->input, adcgs_salvage_bytes, adcgs_interrupted, error)
+                  : adcgs_file_load(&data, &settings->source.bytes, how->input, STREAM_BYTES_MAX, error));
     settings->source.data = data;
     const adcgs_status status = play(how, settings, failed, error);
     free(data);
@@ -140,8 +140,10 @@ static adcgs_status play_coming(const adcgs_dec_play *how, adcgs_play_settings *
 
 adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_error *error)
 {
-    adcgs_play_settings settings = {.source.path = strcmp(how->input, "-") ? how->input : "stream", .config = how->config,
-                                    .script = how->script, .interrupted = adcgs_interrupted};
+    adcgs_play_settings settings = {.source.path = strcmp(how->input, "-") ? how->input : "stream",
+                                    .config = how->config,
+                                    .script = how->script,
+                                    .interrupted = adcgs_interrupted};
     ADCGS_TRY(adcgs_kind_check(how->input, ADCGS_WANT_STREAM, error));
     memcpy(settings.size, how->request.size, sizeof settings.size);
     /* A damaged stream at a URL is read several times, so it is loaded first. */

@@ -7,8 +7,8 @@
 
 /** Settings of the command line for playing. */
 typedef struct adcgs_dec_play {
-    const char *input;           /**< the stream's file */
-    const char *script;          /**< NULL: the user plays */
+    const char *input;                 /**< the stream's file */
+    const char *script;                /**< NULL: the user plays */
     adcgs_camera_path_request request; /**< its camera is the first view; a single time starts paused; the window's size */
     adcgs_config config;
 } adcgs_dec_play;

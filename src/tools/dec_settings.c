@@ -16,12 +16,12 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPT
     const adcgs_option table[ADCGS_DEC_OPTIONS] = {
         {"output", 'o', ADCGS_OPTION_FILE, &s->output, 0, 0, "TARGET",
          "target of frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.mp4 (.mov .mkv .webm .avi), clip.y4m, pixels.raw,\n"
-         "or - for standard output", NULL, NULL},
+         "or - for standard output",
+         NULL, NULL},
         {"format", 'f', ADCGS_OPTION_STRING, &s->format, 0, 0, "NAME",
          "y4m, raw, null, an image's or a video's extension\n(default: by the target's name; - is y4m)", formats, NULL},
         {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
-        {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL,
-         NULL},
+        {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL, NULL},
         {"linear", 0, ADCGS_OPTION_FLAG, &s->linear, 0, 0, NULL, "linear light in EXR instead of sRGB's curve", NULL, NULL},
         {"splats", 0, ADCGS_OPTION_FILE, &s->splats, 0, 0, "FILE",
          "target of splats instead of frames, as .ply, .spz, .glb or .sog:\n"
@@ -35,7 +35,8 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPT
         {"depth", 0, ADCGS_OPTION_FLAG, &s->depth, 0, 0, NULL, "write depth as channel Z of EXR, in world units", NULL, NULL},
         {"codec", 0, ADCGS_OPTION_STRING, &s->video.codec, 0, 0, "NAME",
          "codec of a video: h264, hevc, vp9, av1, ffv1, prores, qtrle or\n"
-         "the name of an FFmpeg encoder (default: by the target's name)", codecs, NULL},
+         "the name of an FFmpeg encoder (default: by the target's name)",
+         codecs, NULL},
         {"crf", 0, ADCGS_OPTION_REAL, &s->video.crf, 0, 63, "Q", "constant rate factor of a video: lower is better, and larger",
          NULL, &s->video.has_crf},
         {"bitrate", 0, ADCGS_OPTION_SIZE, &s->video.bit_rate, 1000, 1e10, "BITS",
@@ -49,26 +50,29 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPT
          "path (.json, .chan, .usda) (default: camera 0, or orbit if\nnone is stored)",
          ways, NULL},
         {"cameras", 0, ADCGS_OPTION_FILE, &s->cameras, 0, 0, "PATH",
-         "file for the stored cameras, or for the path of --camera, as\nPATH.json, .chan or .usda; nothing else is written",
-         NULL, NULL},
+         "file for the stored cameras, or for the path of --camera, as\nPATH.json, .chan or .usda; nothing else is written", NULL,
+         NULL},
         {"rotation-order", 0, ADCGS_OPTION_CHOICE, &s->order, 0, 0, "ORDER",
          "order of the angles in .chan files: xyz (the default), zxy, ...", adcgs_rotation_orders, NULL},
         {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B|N%",
          "one time, or a range at the stream's frame rate, seconds, or\n"
-         "the frame at N percent of the stream (default: everything)", NULL, NULL},
+         "the frame at N percent of the stream (default: everything)",
+         NULL, NULL},
         {"size", 's', ADCGS_OPTION_PAIR, s->request.size, 1, 16384, "WxH", "size of the frames; pixels keep their shape", NULL,
          NULL},
         {"fit", 0, ADCGS_OPTION_FLAG, &s->fit, 0, 0, NULL,
          "for frames of another shape: show the whole view of the\n"
-         "camera, and more on two sides (default with --size)", NULL, NULL},
+         "camera, and more on two sides (default with --size)",
+         NULL, NULL},
         {"fill", 0, ADCGS_OPTION_FLAG, &s->request.fill, 0, 0, NULL,
          "for frames of another shape: show only the view of the\ncamera, less on two sides", NULL, NULL},
         {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
-        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "tiers of the stream to render; fewer give a coarser image",
-         NULL, NULL},
+        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "tiers of the stream to render; fewer give a coarser image", NULL,
+         NULL},
         {"budget", 0, ADCGS_OPTION_STRING, &s->budget_text, 0, 0, "B",
          "limit of the bytes read (40k), or of splats (20000splats) or\n"
-         "milliseconds per frame (16ms), which the number of rendered\ntiers meets", NULL, NULL},
+         "milliseconds per frame (16ms), which the number of rendered\ntiers meets",
+         NULL, NULL},
         {"md5", 0, ADCGS_OPTION_FLAG, &s->md5, 0, 0, NULL,
          "print the MD5 of each frame: its RGB values as little-endian\nbinary32, row by row", NULL, NULL},
         {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "MD5 that all frames together must have", NULL, NULL},
@@ -189,8 +193,9 @@ adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
                           "no output: give -o TARGET, --md5, --verify, --frametimes, --splats, --cameras, --answer or --play");
     const int renders = s->output || s->md5 || s->verify || s->frametimes;
     if (s->cameras && (renders || (!s->request.camera && (frames || s->times))))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--cameras renders nothing: it goes with --camera only, and with --time and "
-                                                  "--size if --camera is given");
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--cameras renders nothing: it goes with --camera only, and with --time and "
+                          "--size if --camera is given");
     s->request.order = (adcgs_rotation_order)s->order;
     if (s->output && !strcmp(s->output, "-") && (s->md5 || s->frametimes))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--md5 and --frametimes need standard output, which --output uses");

@@ -19,8 +19,8 @@ typedef struct adcgs_dec_settings {
     adcgs_camera_path_request request;
     adcgs_config config;
     int quiet, order, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
-    double part;   /**< part of the stream at which the frame lies (--time N%); negative: not given */
-    double opened; /**< time before opening the input, in seconds */
+    double part;                    /**< part of the stream at which the frame lies (--time N%); negative: not given */
+    double opened;                  /**< time before opening the input, in seconds */
     adcgs_http *http, *http_beside; /**< connections of inputs that are URLs */
 } adcgs_dec_settings;
 

@@ -88,8 +88,8 @@ static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_i
     return status;
 }
 
-adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input,
-                              const adcgs_dec_splats_config *how, const adcgs_camera_path_request *request, adcgs_error *error)
+adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input, const adcgs_dec_splats_config *how,
+                              const adcgs_camera_path_request *request, adcgs_error *error)
 {
     const adcgs_splats_style style = {.rest_degree = how->rest_degree};
     adcgs_info info;
@@ -106,9 +106,10 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
         adcgs_cli_note(cli, "%s: the stream ends early; writing its complete part", input);
     ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &times, error));
     if (frames.outside)
-        adcgs_cli_note(cli, "%s: %d of %d file%s %s its first or last frame: the stream lasts from %g to %g "
-                            "s", input, frames.outside,
-                       frames.n, adcgs_s((uint64_t)frames.n), frames.outside == 1 ? "shows" : "show",
+        adcgs_cli_note(cli,
+                       "%s: %d of %d file%s %s its first or last frame: the stream lasts from %g to %g "
+                       "s",
+                       input, frames.outside, frames.n, adcgs_s((uint64_t)frames.n), frames.outside == 1 ? "shows" : "show",
                        info.time_start, info.time_end);
     const adcgs_status status = write_all(&n, decoder, &info, how, &frames, error);
     if (status == ADCGS_OK && !adcgs_interrupted())

@@ -17,7 +17,7 @@ typedef struct adcgs_dec_splats_config {
  * only one time. Without requested times, a target without a number gets the stream's first time, and a target with one gets all
  * times. input names the stream.
  */
-adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input,
-                              const adcgs_dec_splats_config *how, const adcgs_camera_path_request *request, adcgs_error *error);
+adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input, const adcgs_dec_splats_config *how,
+                              const adcgs_camera_path_request *request, adcgs_error *error);
 
 #endif

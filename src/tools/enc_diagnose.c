@@ -8,12 +8,12 @@
 
 #include <math.h>
 
-#define VIEWS 96         /* most views that are measured */
-#define CAMERAS_FEW 3    /* static cameras: views between them are unreliable */
-#define CAMERAS_MANY 5   /* enough cameras for one to be an outlier */
-#define DB_ODD 6.0       /* below the median camera, and SPREADS times as far below the quartile as that is below the median */
-#define SPREADS 3.0      /* cameras of a rig with harder or easier views may differ as much, but not a single one */
-#define DB_UNSEEN 8.0    /* deficit of views that training never saw, if each camera fits only its own images */
+#define VIEWS 96       /* most views that are measured */
+#define CAMERAS_FEW 3  /* static cameras: views between them are unreliable */
+#define CAMERAS_MANY 5 /* enough cameras for one to be an outlier */
+#define DB_ODD 6.0     /* below the median camera, and SPREADS times as far below the quartile as that is below the median */
+#define SPREADS 3.0    /* cameras of a rig with harder or easier views may differ as much, but not a single one */
+#define DB_UNSEEN 8.0  /* deficit of views that training never saw, if each camera fits only its own images */
 #define NAMED 3
 
 typedef struct tally {
@@ -78,8 +78,7 @@ void adcgs_enc_diagnose(const adcgs_cli *cli, adcgs_decoder *decoder, const adcg
     while (cameras < (int)n && found.of[cameras].n)
         cameras++;
     if (cameras <= CAMERAS_FEW && cameras < (int)n)
-        adcgs_cli_note(cli, "%s: filmed by %d camera%s: other viewpoints are unreliable", file, cameras,
-                       cameras > 1 ? "s" : "");
+        adcgs_cli_note(cli, "%s: filmed by %d camera%s: other viewpoints are unreliable", file, cameras, cameras > 1 ? "s" : "");
     if (unseen < mean.psnr - DB_UNSEEN)
         adcgs_cli_note(cli, "%s: training views have %.1f dB, others %.1f: check poses, axes and times, and the number of views",
                        file, mean.psnr, unseen);

@@ -15,7 +15,7 @@
 
 void adcgs_enc_effort_init(adcgs_enc_effort *e, adcgs_enc_job *job)
 {
-    *e = (adcgs_enc_effort){ .delay = job->o->has_delay ? job->o->delay : 0, .most = job->config.iterations };
+    *e = (adcgs_enc_effort){.delay = job->o->has_delay ? job->o->delay : 0, .most = job->config.iterations};
     if (!(e->delay > 0))
         return;
     job->config.matching_frames = (uint8_t)ADCGS_MIN(job->config.matching_frames, FRAMES);

@@ -10,11 +10,11 @@
 #include "tools/enc_run.h"
 
 typedef struct adcgs_enc_effort {
-    double delay;     /**< maximum seconds from filming to writing; 0: no limit */
-    uint32_t most;    /**< maximum iterations of a segment */
-    double rate;      /**< recent iterations per second; 0: unknown */
-    double overhead;  /**< seconds of a segment outside of iterations */
-    uint32_t said;    /**< iterations reported last; 0: none */
+    double delay;    /**< maximum seconds from filming to writing; 0: no limit */
+    uint32_t most;   /**< maximum iterations of a segment */
+    double rate;     /**< recent iterations per second; 0: unknown */
+    double overhead; /**< seconds of a segment outside of iterations */
+    uint32_t said;   /**< iterations reported last; 0: none */
 } adcgs_enc_effort;
 
 /** With a delay, changes settings of the job's configuration so that matching takes less time. */

@@ -33,9 +33,10 @@ static void report_gaps(const adcgs_cli *cli, const adcgs_scene *scene, const ad
 {
     char more[64];
     if (!f->path)
-        adcgs_cli_note(cli, "%s: no camera has an image between %.3f and %.3f s: motion there is unknown; check for missing "
-                            "files", scene->directory,
-                       f->from, f->to);
+        adcgs_cli_note(cli,
+                       "%s: no camera has an image between %.3f and %.3f s: motion there is unknown; check for missing "
+                       "files",
+                       scene->directory, f->from, f->to);
     else
         adcgs_cli_note(cli, "%s: its camera has no image between %.3f and %.3f s, where %.0f would be expected%s",
                        short_name(scene, f->path), f->from, f->to, f->size, others(more, "; gaps also in", f));
@@ -70,8 +71,9 @@ static void report_copies(const adcgs_cli *cli, const adcgs_scene *scene, const 
 /** is_evened: the step was removed from the images. */
 static void report_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins, int is_evened)
 {
-    static const char *const what[ADCGS_LIGHTS][2] = { { "bright", "exposure" }, { "red relative to green", "white balance" },
-                                                       { "blue relative to green", "white balance" } };
+    static const char *const what[ADCGS_LIGHTS][2] = {{"bright", "exposure"},
+                                                      {"red relative to green", "white balance"},
+                                                      {"blue relative to green", "white balance"}};
     char more[64], question[80];
     snprintf(question, sizeof question, "check %s and light (--set exposure_step_compensation)", what[f->light][1]);
     adcgs_cli_note(cli, "%s: at %.3f s the images of %s become %.2f times as %s%s: %s", short_name(scene, f->path),
@@ -91,15 +93,14 @@ void adcgs_enc_report_light(const adcgs_cli *cli, const adcgs_scene *scene, cons
 static void report_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)
 {
     char more[64];
-    adcgs_cli_note(cli, "%s: its camera appears %u frame%s %s than others%s: check synchronisation",
-                   short_name(scene, f->path), f->count, f->count > 1 ? "s" : "", f->size > 0 ? "later" : "earlier",
-                   others(more, "; also", f));
+    adcgs_cli_note(cli, "%s: its camera appears %u frame%s %s than others%s: check synchronisation", short_name(scene, f->path),
+                   f->count, f->count > 1 ? "s" : "", f->size > 0 ? "later" : "earlier", others(more, "; also", f));
 }
 
 static void report_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_pose_error *poses)
 {
-    adcgs_cli_note(cli, "%s: matched points of cameras lie %.1f pixels apart (median): check poses and lenses",
-                   scene->directory, poses->median * poses->pixels);
+    adcgs_cli_note(cli, "%s: matched points of cameras lie %.1f pixels apart (median): check poses and lenses", scene->directory,
+                   poses->median * poses->pixels);
 }
 
 /** Reports the convention that fits the poses, if it is not the given one. */
@@ -107,18 +108,20 @@ static void report_axes(const adcgs_cli *cli, const adcgs_scene *scene, const ad
 {
     static const char *const changes[ADCGS_READINGS] = {"", "y and z of all cameras are flipped", "all poses are inverted",
                                                         "all poses are inverted"};
-    static const char *const questions[ADCGS_READINGS] = {
-        "", "axes are OpenGL's instead of OpenCV's, or the reverse",
-        "matrices map world to camera instead of camera to world",
-        "matrices map world to camera instead of camera to world"};
+    static const char *const questions[ADCGS_READINGS] = {"", "axes are OpenGL's instead of OpenCV's, or the reverse",
+                                                          "matrices map world to camera instead of camera to world",
+                                                          "matrices map world to camera instead of camera to world"};
     const char *const change = changes[d->meant], *const question = questions[d->meant], *const where = scene->directory;
     if (d->by == ADCGS_BY_POINTS)
-        adcgs_cli_note(cli, "%s: a camera sees %.0f %% of the points, and %.0f %% if %s: check whether "
-                            "%s", where, 100.0 * d->here,
-                       100.0 * d->there, change, question);
+        adcgs_cli_note(cli,
+                       "%s: a camera sees %.0f %% of the points, and %.0f %% if %s: check whether "
+                       "%s",
+                       where, 100.0 * d->here, 100.0 * d->there, change, question);
     else if (d->by == ADCGS_BY_IMAGES)
-        adcgs_cli_note(cli, "%s: the cameras' images contradict each other, but not if %s: check whether "
-                            "%s", where, change, question);
+        adcgs_cli_note(cli,
+                       "%s: the cameras' images contradict each other, but not if %s: check whether "
+                       "%s",
+                       where, change, question);
     else
         adcgs_cli_note(cli, "%s: all cameras %s; if they should surround the scene, check whether %s", where,
                        d->meant == ADCGS_READ_TURNED ? "look away from each other" : "are in one place", question);
@@ -128,9 +131,10 @@ static void report_axes(const adcgs_cli *cli, const adcgs_scene *scene, const ad
 static void report_pose_outlier(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_pose_outlier *o, double pixels)
 {
     const char *const path = short_name(scene, scene->views[ADCGS_SPLIT_TRAIN][o->view].path);
-    adcgs_cli_note(cli, "%s: its camera disagrees with the others by %.1f pixels (rotation %.1f degrees, translation %.0f %% of "
-                        "the distance to them): check its pose or lens", path,
-                   o->off * pixels, o->turned, 100.0 * o->moved);
+    adcgs_cli_note(cli,
+                   "%s: its camera disagrees with the others by %.1f pixels (rotation %.1f degrees, translation %.0f %% of "
+                   "the distance to them): check its pose or lens",
+                   path, o->off * pixels, o->turned, 100.0 * o->moved);
 }
 
 /** Reports wrong poses. */
@@ -183,8 +187,10 @@ void adcgs_enc_report_remarks(const adcgs_cli *cli, const adcgs_scene *scene)
 /** Reports images that have no times, but seem to be frames. */
 static void report_times(const adcgs_cli *cli, const adcgs_scene *scene)
 {
-    adcgs_cli_note(cli, "%s: the images' names are plain numbers, so the scene is static: if they are frames of a video, "
-                        "adcgs-import makes a scene with times", scene->directory);
+    adcgs_cli_note(cli,
+                   "%s: the images' names are plain numbers, so the scene is static: if they are frames of a video, "
+                   "adcgs-import makes a scene with times",
+                   scene->directory);
 }
 
 void adcgs_enc_diagnose_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo *found,

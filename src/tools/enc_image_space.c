@@ -11,7 +11,7 @@
 /** Formats "46.9 GB". */
 static const char *show_bytes(uint64_t bytes, char text[24])
 {
-    static const char *const units[] = { "bytes", "kB", "MB", "GB", "TB" };
+    static const char *const units[] = {"bytes", "kB", "MB", "GB", "TB"};
     double value = (double)bytes;
     size_t unit = 0;
     while (value >= 1000 && unit + 1 < ADCGS_COUNTOF(units)) {
@@ -33,17 +33,17 @@ static void tell(const adcgs_enc_context *w, const adcgs_image_store_need *need,
         adcgs_cli_note(cli, "images at full size take about %s: %s in memory, %s in a file in %s, which has room for %s", all,
                        memory, file, folder, show_bytes(need->room, room));
     else
-        adcgs_cli_note(cli, "images at full size take about %s: %s fit into memory, %s into a file in %s%s%s; %u of %u images "
-                       "will be decoded again for each use, which is slow: give more --memory, or a TMPDIR with room", all,
-                       memory, file, folder, need->problem ? ": " : "", need->problem ? strerror(need->problem) : "",
+        adcgs_cli_note(cli,
+                       "images at full size take about %s: %s fit into memory, %s into a file in %s%s%s; %u of %u images "
+                       "will be decoded again for each use, which is slow: give more --memory, or a TMPDIR with room",
+                       all, memory, file, folder, need->problem ? ": " : "", need->problem ? strerror(need->problem) : "",
                        need->again, need->n);
 }
 
 adcgs_status adcgs_enc_report_space(adcgs_enc_context *w, adcgs_error *error)
 {
     const adcgs_trainer *const t = w->t;
-    const adcgs_image_store_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = t->config.scale,
-                                             .memory = t->picture_memory };
+    const adcgs_image_store_config config = {.split = ADCGS_SPLIT_TRAIN, .divide = t->config.scale, .memory = t->picture_memory};
     adcgs_image_store_need need;
     if (w->told_room)
         return ADCGS_OK;

@@ -33,11 +33,11 @@ typedef struct live_run {
     adcgs_live_segment segment;
     adcgs_encode_live stream;
     adcgs_enc_live_file file;
-    adcgs_claim *claim; /* on the file; NULL: a pipe */
+    adcgs_claim *claim;         /* on the file; NULL: a pipe */
     adcgs_enc_live_resume past; /* the stream to continue */
-    adcgs_buffer bytes;   /* of the current segment */
-    int is_open;          /* the stream has a segment */
-    double key;           /* seconds at which the last key began */
+    adcgs_buffer bytes;         /* of the current segment */
+    int is_open;                /* the stream has a segment */
+    double key;                 /* seconds at which the last key began */
     adcgs_enc_effort effort;
     adcgs_enc_live_sum sum;
 } live_run;
@@ -80,7 +80,7 @@ static adcgs_status begin_stream(live_run *r, adcgs_error *error)
     adcgs_enc_make_notes(&n, r->w->t, (const char *)r->w->changes.data);
     r->is_open = 1;
     r->sum.streams++;
-    adcgs_cuts cuts = { .n = times - 1, .at = adcgs_alloc(NULL, times, sizeof *cuts.at, error) };
+    adcgs_cuts cuts = {.n = times - 1, .at = adcgs_alloc(NULL, times, sizeof *cuts.at, error)};
     if (!cuts.at)
         return adcgs_alloc_status(error);
     adcgs_live_times(r->live, cuts.at);
@@ -96,8 +96,7 @@ static adcgs_status begin_another(live_run *r, adcgs_model *model, adcgs_error *
 {
     ADCGS_TRY(end_stream(r, error));
     ADCGS_TRY(adcgs_enc_live_file_next(&r->file, error));
-    adcgs_cli_note(r->job->cli, "the stream is full, with %u segments; another begins: %s",
-                   r->past.n + r->sum.n, r->file.path);
+    adcgs_cli_note(r->job->cli, "the stream is full, with %u segments; another begins: %s", r->past.n + r->sum.n, r->file.path);
     ADCGS_TRY(begin_stream(r, error));
     return adcgs_encode_live_add(&r->stream, model, &r->bytes, error);
 }
@@ -115,7 +114,7 @@ static adcgs_status add_segment(live_run *r, int follows, adcgs_model *model, ad
 
 static adcgs_status write_segment(live_run *r, int follows, adcgs_error *error)
 {
-    adcgs_model model = { .n = 0 };
+    adcgs_model model = {.n = 0};
     if (!r->is_open)
         ADCGS_TRY(begin_stream(r, error));
     const adcgs_status status = add_segment(r, follows, &model, error);
@@ -149,10 +148,9 @@ static adcgs_status learn_segment(live_run *r, adcgs_error *error)
         r->job->config.params.time_rows = r->stream.front.params.time_rows;
     w->segment = r->past.n + r->sum.n;
     w->next_log = 0;
-    w->first = w->last = (adcgs_train_report){ .iteration = 0 };
+    w->first = w->last = (adcgs_train_report){.iteration = 0};
     adcgs_enc_effort_choose(&r->effort, r->job, r->segment.came, r->segment.end - r->segment.begin, w->segment);
-    ADCGS_TRY(adcgs_enc_train(w, r->job, r->segment.scene, follows ? before : NULL, before, NULL, (adcgs_time){ 0, 0 },
-                              error));
+    ADCGS_TRY(adcgs_enc_train(w, r->job, r->segment.scene, follows ? before : NULL, before, NULL, (adcgs_time){0, 0}, error));
     ADCGS_TRY(write_segment(r, w->t->f->follows, error));
     adcgs_enc_effort_train(&r->effort, &w->first, &w->last, adcgs_seconds() - started);
     adcgs_enc_live_sum_add(&r->sum, r->segment.begin, r->segment.end, r->segment.came, w->last.iteration);
@@ -163,8 +161,10 @@ static void report_missing(live_run *r)
 {
     double time;
     for (const char *name; (name = adcgs_live_missing(r->live, &time));)
-        adcgs_cli_error(r->job->cli, ADCGS_OK, "%s: no image at %g s; this time, and similar ones, are trained without it "
-                                               "(reported once)", name, time);
+        adcgs_cli_error(r->job->cli, ADCGS_OK,
+                        "%s: no image at %g s; this time, and similar ones, are trained without it "
+                        "(reported once)",
+                        name, time);
 }
 
 /* ---- Continuing a stream ---- */
@@ -173,8 +173,8 @@ static void report_missing(live_run *r)
 static adcgs_status take_past(live_run *r, adcgs_live_options *options, adcgs_error *error)
 {
     const adcgs_model *const last = &r->past.last;
-    ADCGS_TRY(adcgs_enc_live_resume_read(&r->past, &r->stream, &r->file, ANCHORS_MARGIN * r->job->config.max_anchors, r->job,
-                                         error));
+    ADCGS_TRY(
+        adcgs_enc_live_resume_read(&r->past, &r->stream, &r->file, ANCHORS_MARGIN * r->job->config.max_anchors, r->job, error));
     options->last[0] = last->time_start;
     options->last[1] = last->time_end;
     memcpy(options->origin, r->stream.front.scene_origin, sizeof options->origin);
@@ -248,8 +248,10 @@ static adcgs_status claim_file(live_run *r, adcgs_error *error)
 static adcgs_status run(live_run *r, adcgs_error *error)
 {
     const adcgs_enc_options *o = r->job->o;
-    adcgs_live_options options = { .seconds = o->segment, .unbounded = o->has_delay, .points_path = o->points,
-                                   .interrupted = adcgs_interrupted };
+    adcgs_live_options options = {.seconds = o->segment,
+                                  .unbounded = o->has_delay,
+                                  .points_path = o->points,
+                                  .interrupted = adcgs_interrupted};
     adcgs_interrupt_catch(1);
     signal(SIGPIPE, SIG_IGN); /* a reader that leaves is a write error */
     ADCGS_TRY(adcgs_enc_live_file_open(&r->file, o->output, o->resume, error));
@@ -270,7 +272,7 @@ static adcgs_status run(live_run *r, adcgs_error *error)
 
 adcgs_status adcgs_enc_live(adcgs_enc_context *w, adcgs_enc_job *job, adcgs_error *error)
 {
-    live_run r = { .w = w, .job = job };
+    live_run r = {.w = w, .job = job};
     if (job->config.exposure_step_compensation)
         return adcgs_fail(error, ADCGS_ERR_USAGE,
                           "--live: exposure_step_compensation needs all images before training: leave it out");

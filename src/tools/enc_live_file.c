@@ -59,16 +59,18 @@ static int follows(const char *name, uint32_t number)
 
 adcgs_status adcgs_enc_live_file_open(adcgs_enc_live_file *f, const char *name, const char *past, adcgs_error *error)
 {
-    *f = (adcgs_enc_live_file){ .name = name };
+    *f = (adcgs_enc_live_file){.name = name};
     if (past && adcgs_pipe_is(past))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: expected a file, which can be read back", past);
     const uint32_t number = past ? find_number(name, past) : 1;
     if (!number)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: expected the file of --output, or a later one "
-                                                  "(name.2.adcgs)", past);
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--resume %s: expected the file of --output, or a later one "
+                          "(name.2.adcgs)",
+                          past);
     if (past && follows(name, number))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: another stream followed, number %u: continue the last one",
-                          past, number + 1);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: another stream followed, number %u: continue the last one", past,
+                          number + 1);
     ADCGS_TRY(open_number(f, number, error));
     f->growing.is_hidden = past != NULL;
     return ADCGS_OK;

@@ -10,9 +10,9 @@
 #include "io/growing.h"
 
 typedef struct adcgs_enc_live_file {
-    const char *name;  /**< as given */
-    char *path;        /**< of the current stream; NULL: not open */
-    uint32_t number;   /**< streams so far */
+    const char *name; /**< as given */
+    char *path;       /**< of the current stream; NULL: not open */
+    uint32_t number;  /**< streams so far */
     adcgs_growing growing;
 } adcgs_enc_live_file;
 

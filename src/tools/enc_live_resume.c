@@ -44,8 +44,7 @@ static void tell(const adcgs_enc_live_resume *p, const adcgs_resume_reader *from
 {
     const char *const fault = from->fault.status != ADCGS_OK ? from->fault.text : NULL;
     adcgs_cli_note(cli, "%s: %u segment%s %s complete, to %g s%s%s", from->path, p->n + 1, adcgs_s(p->n + 1), p->n ? "are" : "is",
-                   p->last.time_end,
-                   fault ? "; after that: " : "", fault ? fault : "");
+                   p->last.time_end, fault ? "; after that: " : "", fault ? fault : "");
 }
 
 adcgs_status adcgs_enc_live_resume_read(adcgs_enc_live_resume *p, adcgs_encode_live *stream, adcgs_enc_live_file *file,
@@ -56,8 +55,8 @@ adcgs_status adcgs_enc_live_resume_read(adcgs_enc_live_resume *p, adcgs_encode_l
     if (status == ADCGS_OK)
         status = take_segments(p, &from, stream, file, max_anchors, job, error);
     if (status == ADCGS_OK && !p->last.n)
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: no complete segment, so nothing can be continued%s%s",
-                            job->o->resume, from.fault.status != ADCGS_OK ? "; " : "", from.fault.text);
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: no complete segment, so nothing can be continued%s%s", job->o->resume,
+                            from.fault.status != ADCGS_OK ? "; " : "", from.fault.text);
     if (status == ADCGS_OK)
         tell(p, &from, job->cli);
     adcgs_resume_reader_close(&from);
@@ -77,5 +76,5 @@ adcgs_status adcgs_enc_live_resume_end(adcgs_enc_live_resume *p, adcgs_encode_li
 void adcgs_enc_live_resume_clear(adcgs_enc_live_resume *p)
 {
     adcgs_model_clear(&p->last, NULL);
-    p->last = (adcgs_model){ .n = 0 };
+    p->last = (adcgs_model){.n = 0};
 }

@@ -9,10 +9,10 @@
 
 /** Zero-initialise before use. */
 typedef struct adcgs_enc_live_resume {
-    adcgs_model last;    /**< the last complete segment, not added yet: it may have to be trained again; n 0: none */
-    uint32_t n;          /**< added segments */
-    uint64_t bytes;      /**< of the added segments */
-    double key;          /**< seconds at which the last key among them begins */
+    adcgs_model last; /**< the last complete segment, not added yet: it may have to be trained again; n 0: none */
+    uint32_t n;       /**< added segments */
+    uint64_t bytes;   /**< of the added segments */
+    double key;       /**< seconds at which the last key among them begins */
 } adcgs_enc_live_resume;
 
 /**

@@ -7,12 +7,12 @@
 
 typedef struct adcgs_enc_live_sum {
     uint32_t n, keys, streams;
-    uint32_t past;               /**< earlier segments of a continued stream */
-    uint64_t bytes;              /**< earlier segments included */
-    double begin, end;           /**< seconds of the scene */
-    double delay, worst;         /**< seconds: sum over segments, and maximum */
-    uint64_t iterations;         /**< sum */
-    uint32_t least, most;        /**< minimum and maximum of a segment */
+    uint32_t past;        /**< earlier segments of a continued stream */
+    uint64_t bytes;       /**< earlier segments included */
+    double begin, end;    /**< seconds of the scene */
+    double delay, worst;  /**< seconds: sum over segments, and maximum */
+    uint64_t iterations;  /**< sum */
+    uint32_t least, most; /**< minimum and maximum of a segment */
 } adcgs_enc_live_sum;
 
 /** Adds a segment that was just written: its time range, and the arrival of its last image, by adcgs_seconds(). */

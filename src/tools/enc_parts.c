@@ -79,7 +79,7 @@ adcgs_status adcgs_enc_part_save(const char *base, const adcgs_cuts *cuts, uint3
 adcgs_status adcgs_enc_part_load(adcgs_stream *stream, const char *name, adcgs_cpu_level cpu, adcgs_pool *pool, int *found,
                                  adcgs_error *error)
 {
-    const adcgs_read_options options = { .cpu = cpu, .pool = pool, .strict_end = 1 };
+    const adcgs_read_options options = {.cpu = cpu, .pool = pool, .strict_end = 1};
     adcgs_error why;
     FILE *file = fopen(name, "rb");
     *found = file != NULL;
@@ -122,7 +122,7 @@ adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, co
                                   int *found, adcgs_error *error)
 {
     adcgs_stream now, then;
-    adcgs_model none = { .n = 0 };
+    adcgs_model none = {.n = 0};
     char *name;
     *found = 0;
     ADCGS_TRY(adcgs_enc_part_name(&name, base, part, 1, error));
@@ -134,8 +134,10 @@ adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, co
         status = adcgs_enc_part_load(&then, name, cpu, pool, found, error);
     const char *const what = status == ADCGS_OK && *found ? difference(&now, &then) : NULL;
     if (what)
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: belongs to another run (different %s): remove it, or name another "
-                                                   "output", name, what);
+        status = adcgs_fail(error, ADCGS_ERR_DATA,
+                            "%s: belongs to another run (different %s): remove it, or name another "
+                            "output",
+                            name, what);
     adcgs_stream_clear(&now, NULL);
     adcgs_stream_clear(&then, NULL);
     free(name);
@@ -144,7 +146,7 @@ adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, co
 
 void adcgs_enc_part_await(const char *base, uint32_t part)
 {
-    const struct timespec nap = { 0, AWAIT_NAP };
+    const struct timespec nap = {0, AWAIT_NAP};
     adcgs_error ignored;
     char *name;
     if (adcgs_enc_part_name(&name, base, part, 1, &ignored) != ADCGS_OK)

@@ -22,9 +22,10 @@
 
 static size_t size_of(adcgs_option_kind kind)
 {
-    return kind == ADCGS_OPTION_REAL || kind == ADCGS_OPTION_SECONDS ? sizeof(double) :
-           kind == ADCGS_OPTION_SIZE ? sizeof(uint64_t) :
-           kind == ADCGS_OPTION_STRING || kind == ADCGS_OPTION_FILE ? sizeof(char *) : sizeof(int);
+    return kind == ADCGS_OPTION_REAL || kind == ADCGS_OPTION_SECONDS  ? sizeof(double)
+           : kind == ADCGS_OPTION_SIZE                                ? sizeof(uint64_t)
+           : kind == ADCGS_OPTION_STRING || kind == ADCGS_OPTION_FILE ? sizeof(char *)
+                                                                      : sizeof(int);
 }
 
 /** Returns the first given option that is not among the names, which end with NULL; NULL if there is none. */
@@ -34,8 +35,8 @@ static const char *find_other(const adcgs_cli *cli, const adcgs_enc_options *o, 
     for (size_t i = 0; i < cli->n_options; i++) {
         const adcgs_option *const option = &cli->options[i];
         const size_t at = (size_t)((const char *)option->target - (const char *)o);
-        const int given = option->given ? *option->given :
-                                          memcmp(option->target, (const char *)before + at, size_of(option->kind)) != 0;
+        const int given =
+            option->given ? *option->given : memcmp(option->target, (const char *)before + at, size_of(option->kind)) != 0;
         const char *const *name = names;
         while (*name && strcmp(*name, option->name))
             name++;
@@ -47,15 +48,18 @@ static const char *find_other(const adcgs_cli *cli, const adcgs_enc_options *o, 
 
 int adcgs_enc_plan_check(const adcgs_cli *cli, const adcgs_enc_options *o, const adcgs_enc_options *before)
 {
-    static const char *const making[] = { "plan", "cut", "key", "fade", "preset", "lambda", "psnr", "iterations", "scale", "k",
-                                          "max-anchors", "dataset", "frames", "fps", "points", "without", "fixed",
-                                          "no-progression", "set", "seed", "cpu", "bf16", "threads", NULL };
-    static const char *const learning[] = { "plan", "segment", "points", "log", "checkpoint-every", "memory", "threads", "json",
-                                            NULL };
+    static const char *const making[] = {"plan",   "cut",        "key",    "fade",    "preset",      "lambda",
+                                         "psnr",   "iterations", "scale",  "k",       "max-anchors", "dataset",
+                                         "frames", "fps",        "points", "without", "fixed",       "no-progression",
+                                         "set",    "seed",       "cpu",    "bf16",    "threads",     NULL};
+    static const char *const learning[] = {"plan",   "segment", "points", "log", "checkpoint-every",
+                                           "memory", "threads", "json",   NULL};
     const char *const other = find_other(cli, o, before, o->has_segment ? learning : making);
     if (other && o->has_segment)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s: the plan sets the training of its segments: give --plan and "
-                                                     "--segment without it", other);
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
+                               "--%s: the plan sets the training of its segments: give --plan and "
+                               "--segment without it",
+                               other);
     if (other)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s is not a setting of plans: leave it out", other);
     if (o->has_segment && (o->segment < 1 || o->segment != floor(o->segment)))
@@ -132,7 +136,7 @@ static adcgs_status make(adcgs_plan *p, adcgs_enc_job *job, const adcgs_scene_op
     ADCGS_TRY(fill(p, job, options, error));
     ADCGS_TRY(adcgs_plan_write(p, job->scene, path, error));
     adcgs_plan_clear(p); /* together with the job's cuts */
-    job->cuts = (adcgs_cuts){ .n = 0 };
+    job->cuts = (adcgs_cuts){.n = 0};
     ADCGS_TRY(adcgs_plan_read(p, path, error));
     for (uint32_t i = 0; i < p->cuts.n; i++) {
         cost += p->segments[i].cost;
@@ -145,14 +149,14 @@ static adcgs_status make(adcgs_plan *p, adcgs_enc_job *job, const adcgs_scene_op
 
 adcgs_status adcgs_enc_plan_make(adcgs_enc_job *job, const adcgs_scene_options *options, adcgs_error *error)
 {
-    adcgs_plan plan = { .dataset = 0 };
+    adcgs_plan plan = {.dataset = 0};
     ADCGS_TRY(adcgs_scene_open(&job->scene, job->o->scene, options, error));
     adcgs_enc_report_remarks(job->cli, job->scene);
     adcgs_enc_reduce_large(job, job->scene, NULL);
     ADCGS_TRY(adcgs_enc_cut(job, job->o->cut, error));
     const adcgs_status status = make(&plan, job, options, error);
     if (plan.cuts.at == job->cuts.at)
-        job->cuts = (adcgs_cuts){ .n = 0 };
+        job->cuts = (adcgs_cuts){.n = 0};
     adcgs_plan_clear(&plan);
     return status;
 }
@@ -163,8 +167,10 @@ adcgs_status adcgs_enc_plan_make(adcgs_enc_job *job, const adcgs_scene_options *
 static adcgs_status open_scene(adcgs_enc_job *job, const adcgs_plan *p, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
-    adcgs_scene_options options = { .points_path = o->points ? o->points : p->points, .dataset = p->dataset, .rate = p->rate,
-                                    .is_outline = 1 };
+    adcgs_scene_options options = {.points_path = o->points ? o->points : p->points,
+                                   .dataset = p->dataset,
+                                   .rate = p->rate,
+                                   .is_outline = 1};
     char outline[sizeof p->outline];
     if (p->frames)
         ADCGS_TRY(adcgs_frames_parse(&options.frames, p->frames, error));
@@ -185,10 +191,11 @@ static adcgs_status take_settings(adcgs_enc_context *w, adcgs_enc_job *job, cons
 {
     ADCGS_TRY(adcgs_plan_check_version(p, job->o->plan, error));
     if (adcgs_cpu_resolve(p->cpu, &job->cpu, error) != ADCGS_OK)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: for kernels of level %s, which this machine lacks: a plan made with "
-                                                        "--cpu %s fits all machines that have "
-                                                        "those", job->o->plan, adcgs_cpu_name(p->cpu),
-                          adcgs_cpu_name(adcgs_cpu_best()));
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED,
+                          "%s: for kernels of level %s, which this machine lacks: a plan made with "
+                          "--cpu %s fits all machines that have "
+                          "those",
+                          job->o->plan, adcgs_cpu_name(p->cpu), adcgs_cpu_name(adcgs_cpu_best()));
     job->plan = p;
     job->config = p->config;
     if (p->config.bf16)
@@ -238,7 +245,7 @@ static adcgs_status report(const adcgs_enc_job *job, const adcgs_enc_context *w,
 static adcgs_status learn(adcgs_enc_context *w, adcgs_enc_job *job, const char *name, adcgs_error *error)
 {
     adcgs_stream there;
-    adcgs_time spent = { 0, 0 };
+    adcgs_time spent = {0, 0};
     int found;
     adcgs_status status = adcgs_plan_part_load(&there, job->plan, w->base, w->segment, job->cpu, job->pool, &found, error);
     adcgs_stream_clear(&there, NULL);
@@ -276,7 +283,7 @@ static adcgs_status learn_claimed(adcgs_enc_context *w, adcgs_enc_job *job, adcg
 
 adcgs_status adcgs_enc_plan_train(adcgs_enc_context *w, adcgs_enc_job *job, adcgs_error *error)
 {
-    adcgs_plan plan = { .dataset = 0 };
+    adcgs_plan plan = {.dataset = 0};
     adcgs_status status = adcgs_plan_read(&plan, job->o->plan, error);
     if (status == ADCGS_OK)
         status = take_settings(w, job, &plan, error);
@@ -288,7 +295,7 @@ adcgs_status adcgs_enc_plan_train(adcgs_enc_context *w, adcgs_enc_job *job, adcg
         status = learn_claimed(w, job, error);
     job->plan = NULL;
     if (job->cuts.at == plan.cuts.at)
-        job->cuts = (adcgs_cuts){ .n = 0 };
+        job->cuts = (adcgs_cuts){.n = 0};
     adcgs_plan_clear(&plan);
     return status;
 }

@@ -24,8 +24,8 @@ static const adcgs_scene_view *choose(const adcgs_scene *scene)
 static adcgs_status draw(float *image, adcgs_trainer *t, const adcgs_scene_view *of, const adcgs_camera *camera,
                          adcgs_error *error)
 {
-    const adcgs_pass_mode mode = { .quant = t->rounding && !t->frozen ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NONE,
-                                   .deform = ADCGS_DEFORM_ALL };
+    const adcgs_pass_mode mode = {.quant = t->rounding && !t->frozen ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NONE,
+                                  .deform = ADCGS_DEFORM_ALL};
     adcgs_view view;
     ADCGS_TRY(adcgs_view_init(&view, camera, t->origin, t->scale, error));
     adcgs_pass_forward(t->pass, t->f, adcgs_trainer_time(t, of->time), &mode);
@@ -36,13 +36,13 @@ static adcgs_status place(adcgs_mosaic *mosaic, adcgs_trainer *t, const adcgs_sc
                           const float *taken, adcgs_error *error)
 {
     const size_t plane = (size_t)camera->width * (size_t)camera->height;
-    adcgs_mosaic_place(mosaic, 0, 0, (adcgs_samples){ taken, 1, plane });
+    adcgs_mosaic_place(mosaic, 0, 0, (adcgs_samples){taken, 1, plane});
     if (!t)
         return ADCGS_OK;
     float *image = adcgs_alloc(NULL, 3 * plane, sizeof *image, error);
     const adcgs_status status = image ? draw(image, t, view, camera, error) : adcgs_alloc_status(error);
     if (status == ADCGS_OK)
-        adcgs_mosaic_place(mosaic, 1, 0, (adcgs_samples){ image, 1, plane });
+        adcgs_mosaic_place(mosaic, 1, 0, (adcgs_samples){image, 1, plane});
     adcgs_free(NULL, image);
     return status;
 }
@@ -74,7 +74,7 @@ adcgs_status adcgs_enc_preview_begin(const char *path, const adcgs_scene *scene,
 void adcgs_enc_preview_show(adcgs_enc_preview *preview, adcgs_trainer *t, const char *stage, adcgs_progress *progress)
 {
     const int another = !stage || !preview->stage || strcmp(stage, preview->stage);
-    adcgs_error why = { ADCGS_OK, "" };
+    adcgs_error why = {ADCGS_OK, ""};
     if (!preview->path || !t->divide || (!another && fabs(t->elapsed.clock - preview->drawn) < EVERY))
         return;
     preview->stage = stage;

@@ -23,7 +23,7 @@ adcgs_rank_note adcgs_rank_say(int kind, const adcgs_enc_job *job)
 
 void adcgs_rank_nap(void)
 {
-    const struct timespec nap = { 0, NAP };
+    const struct timespec nap = {0, NAP};
     nanosleep(&nap, NULL);
 }
 
@@ -46,7 +46,7 @@ static void take_report(adcgs_rank_note *n, const adcgs_enc_context *w)
 /** Trains the note's segment. The first rank of a team informs the others. A failure names the rank and its segment. */
 static adcgs_status learn(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_rank_note *n, adcgs_error *error)
 {
-    n->spent = (adcgs_time){ 0, 0 };
+    n->spent = (adcgs_time){0, 0};
     n->kind = ADCGS_RANK_LEARN;
     for (int r = 1; !w->team.team.rank && r < w->team.team.size; r++)
         adcgs_ranks_send(job->ranks, w->team.first + r, n, sizeof *n);
@@ -56,8 +56,9 @@ static adcgs_status learn(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_
     take_report(n, w);
     n->kind = ADCGS_RANK_DONE;
     const adcgs_error why = *error;
-    return status == ADCGS_OK ? status : adcgs_fail(error, status, "rank %d on %s, segment %u: %.160s", job->ranks->rank,
-                                                    job->ranks->host, n->segment + 1, why.text);
+    return status == ADCGS_OK ? status
+                              : adcgs_fail(error, status, "rank %d on %s, segment %u: %.160s", job->ranks->rank, job->ranks->host,
+                                           n->segment + 1, why.text);
 }
 
 /* ---- Ranks after rank 0 ---- */
@@ -91,7 +92,7 @@ int adcgs_rank_ignore_progress(void *user, const adcgs_enc_context *w)
 adcgs_status adcgs_rank_follow(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_error *error)
 {
     const int leads = !w->team.team.rank && w->team.team.size; /* a team, or trains alone */
-    follower f = { .ranks = job->ranks, .last = adcgs_rank_say(ADCGS_RANK_READY, job) };
+    follower f = {.ranks = job->ranks, .last = adcgs_rank_say(ADCGS_RANK_READY, job)};
     w->on_progress = leads ? tell : adcgs_rank_ignore_progress;
     w->progress_user = &f;
     w->segments = job->cuts.n;

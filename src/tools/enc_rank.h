@@ -15,7 +15,7 @@ typedef struct adcgs_rank_note {
     int32_t kind, level; /**< level: of the kernels */
     uint32_t segment, iteration, iterations;
     double rate, loss, psnr;
-    adcgs_time spent;    /**< DONE: on training this segment */
+    adcgs_time spent; /**< DONE: on training this segment */
     char host[ADCGS_RANKS_HOST];
 } adcgs_rank_note;
 

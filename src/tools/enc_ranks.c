@@ -75,11 +75,15 @@ static void report_idle(const adcgs_enc_job *job)
     if (busy == ranks)
         return;
     if (job->cuts.n > 1)
-        adcgs_cli_note(job->cli, "%u segments, %u of them keys, batch=%u: at most %d of %d ranks work at a time; --key makes "
-                                 "more, or --set batch=", job->cuts.n, keys, batch, busy, ranks);
+        adcgs_cli_note(job->cli,
+                       "%u segments, %u of them keys, batch=%u: at most %d of %d ranks work at a time; --key makes "
+                       "more, or --set batch=",
+                       job->cuts.n, keys, batch, busy, ranks);
     else
-        adcgs_cli_note(job->cli, "one segment, batch=%u: at most %d of %d ranks work; --set batch= makes "
-                                 "more", batch, busy, ranks);
+        adcgs_cli_note(job->cli,
+                       "one segment, batch=%u: at most %d of %d ranks work; --set batch= makes "
+                       "more",
+                       batch, busy, ranks);
 }
 
 adcgs_status adcgs_enc_ranks_gather(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_error *error)
@@ -162,10 +166,11 @@ static adcgs_status hear_note(leader *l, int rank, const adcgs_rank_note *n, adc
     l->last[rank] = *n;
     l->there[rank] = 1;
     if (n->kind == ADCGS_RANK_READY && n->level != (int32_t)l->job->cpu)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "rank %d on %s has kernels of level %s, rank 0 those of %s, which train "
-                                                        "differently: give "
-                                                        "--cpu", rank, n->host, adcgs_cpu_name((adcgs_cpu_level)n->level),
-                          adcgs_cpu_name(l->job->cpu));
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED,
+                          "rank %d on %s has kernels of level %s, rank 0 those of %s, which train "
+                          "differently: give "
+                          "--cpu",
+                          rank, n->host, adcgs_cpu_name((adcgs_cpu_level)n->level), adcgs_cpu_name(l->job->cpu));
     if (n->kind != ADCGS_RANK_DONE)
         return ADCGS_OK;
     l->states[n->segment] = FINISHED;
@@ -222,8 +227,9 @@ static void report_stopped(leader *l)
             at += (size_t)snprintf(text + at, sizeof text - at, "%srank %d on %s at iteration %u of segment %u", at ? ", " : "",
                                    i, l->last[i].host, l->last[i].iteration, l->last[i].segment + 1);
     adcgs_progress_clear(&l->progress);
-    adcgs_cli_error(l->job->cli, ADCGS_OK, "stopped, with %u of %u segments done%s%s; continue with the same command and "
-                                           "--resume %s",
+    adcgs_cli_error(l->job->cli, ADCGS_OK,
+                    "stopped, with %u of %u segments done%s%s; continue with the same command and "
+                    "--resume %s",
                     l->done, l->job->cuts.n, *text ? ": " : "", text, l->w->base);
 }
 
@@ -261,7 +267,7 @@ static adcgs_status find_done(leader *l, adcgs_error *error)
 adcgs_status adcgs_enc_ranks_lead(adcgs_enc_context *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
 {
     const adcgs_ranks *const ranks = job->ranks;
-    leader l = { .w = w, .job = job, .ranks = ranks, .spent = spent, .own = { .w = w, .job = job } };
+    leader l = {.w = w, .job = job, .ranks = ranks, .spent = spent, .own = {.w = w, .job = job}};
     adcgs_progress_init(&l.progress, job->cli);
     adcgs_interrupt_catch(1);
     w->segments = job->cuts.n;

@@ -29,7 +29,7 @@ typedef struct result {
     adcgs_evaluation quality; /**< of the views of split */
     adcgs_split split;
     outcome target;
-    double lambda;            /**< of the last segment, from the file */
+    double lambda; /**< of the last segment, from the file */
 } result;
 
 static void print_text(const adcgs_enc_report *r, const result *x)
@@ -45,8 +45,7 @@ static void print_text(const adcgs_enc_report *r, const result *x)
     fprintf(stderr, "%u anchors (%u static), %u primitives; lambda %.3g; trained in %.0f s (CPU %.0f s)\n", x->info.anchors,
             x->info.static_anchors, x->info.gaussians, x->lambda, r->spent.clock, r->spent.cpu);
     fprintf(stderr, "decoded from the file, %u %s view%s: %.2f dB PSNR, %.4f SSIM\n", x->quality.n, adcgs_split_name(x->split),
-            adcgs_s(x->quality.n),
-            x->quality.psnr, x->quality.ssim);
+            adcgs_s(x->quality.n), x->quality.psnr, x->quality.ssim);
 }
 
 /** Rounds to six digits, so that the binary32 number nearest to 0.01 is printed as 0.01. */
@@ -146,7 +145,7 @@ static adcgs_status judge(const adcgs_cli *cli, outcome *o, const adcgs_enc_repo
 {
     const adcgs_train_config *c = r->config;
     adcgs_evaluation e;
-    *o = (outcome){ .value = c->target_value, .met = 1 };
+    *o = (outcome){.value = c->target_value, .met = 1};
     if (c->target == ADCGS_TARGET_SIZE) {
         o->kind = "size";
         o->reached = (double)info->bytes.total;
@@ -168,16 +167,16 @@ static void report_missed(const adcgs_cli *cli, const adcgs_enc_report *r, const
                         o->reached, o->value);
     else
         adcgs_cli_error(cli, ADCGS_OK, "%s: the training views have %.2f dB instead of the requested %.2f: %s", r->file,
-                        o->reached, o->value,
-                        o->reached < o->value ? "the maximum of this run" : "the minimum of this run");
+                        o->reached, o->value, o->reached < o->value ? "the maximum of this run" : "the minimum of this run");
 }
 
 static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_report *r, adcgs_decoder *decoder,
                             adcgs_error *error)
 {
     const adcgs_scene *scene = r->scene;
-    x->split = scene->n_views[ADCGS_SPLIT_TEST] ? ADCGS_SPLIT_TEST :
-               scene->n_views[ADCGS_SPLIT_VAL]  ? ADCGS_SPLIT_VAL : ADCGS_SPLIT_TRAIN;
+    x->split = scene->n_views[ADCGS_SPLIT_TEST]  ? ADCGS_SPLIT_TEST
+               : scene->n_views[ADCGS_SPLIT_VAL] ? ADCGS_SPLIT_VAL
+                                                 : ADCGS_SPLIT_TRAIN;
     const char *const lambda = adcgs_get_metadata(decoder, "lambda");
     x->lambda = lambda ? strtod(lambda, NULL) : 0;
     ADCGS_TRY(adcgs_get_info(decoder, &x->info, sizeof x->info, error));

@@ -10,12 +10,12 @@ typedef struct adcgs_enc_report {
     const char *file;
     const adcgs_train_config *config;
     adcgs_cpu_level cpu;
-    const adcgs_scene *scene;     /**< the whole scene */
-    adcgs_train_report last; /**< of the training run, or of the last segment's */
-    adcgs_time spent;        /**< on training, all segments together */
-    size_t uncompressed;     /**< bytes of the file of plain numbers; 0: not requested */
-    int threads, json; /**< as on the command line */
-    int interrupts;    /**< interrupts that the run has handled; one more ends the measurement */
+    const adcgs_scene *scene; /**< the whole scene */
+    adcgs_train_report last;  /**< of the training run, or of the last segment's */
+    adcgs_time spent;         /**< on training, all segments together */
+    size_t uncompressed;      /**< bytes of the file of plain numbers; 0: not requested */
+    int threads, json;        /**< as on the command line */
+    int interrupts;           /**< interrupts that the run has handled; one more ends the measurement */
 } adcgs_enc_report;
 
 /**

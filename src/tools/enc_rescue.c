@@ -55,7 +55,7 @@ void adcgs_enc_report_continuation(const adcgs_cli *cli, const adcgs_enc_context
 
 void adcgs_enc_rescue(const adcgs_cli *cli, adcgs_enc_context *w, adcgs_status status)
 {
-    adcgs_error why = { ADCGS_OK, "" };
+    adcgs_error why = {ADCGS_OK, ""};
     char *path;
     if (!w->t || w->is_live || w->o->finish || status == ADCGS_ERR_USAGE || !adcgs_trainer_rescued(w->t))
         return;

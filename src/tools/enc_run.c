@@ -61,7 +61,7 @@ static void log_last(adcgs_enc_context *w)
     if (!w->log)
         return;
     w->next_log = r->iteration + 100;
-    static const char *const streams[ADCGS_GROUPS] = { "eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4" };
+    static const char *const streams[ADCGS_GROUPS] = {"eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4"};
     adcgs_json line;
     open_line(w, &line, r->stage);
     adcgs_json_int(&line, "of", r->iterations);
@@ -100,7 +100,7 @@ const char *adcgs_enc_format_eta(double seconds, char text[32])
 /** Saves a checkpoint. If that fails the run continues, and tries again when the next one is due. */
 static void save_now_and_then(adcgs_enc_context *w, double seconds)
 {
-    adcgs_error why = { ADCGS_OK, "" };
+    adcgs_error why = {ADCGS_OK, ""};
     const int failed = w->unsaved;
     w->saved = seconds;
     w->unsaved = adcgs_trainer_save(w->t, w->state, &why) != ADCGS_OK;
@@ -181,11 +181,15 @@ void adcgs_enc_make_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char
     snprintf(n->iterations, sizeof n->iterations, "%u", t->iteration);
     adcgs_decisions_format(&t->decisions, n->decisions);
     const adcgs_encode_note list[] = {
-        { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
-        { "iterations", n->iterations }, { "seed", n->seed },     { "decisions", n->decisions },
+        {"encoder", "adcgs-enc " PACKAGE_VERSION},
+        {"preset", t->config.preset},
+        {"lambda", n->lambda},
+        {"iterations", n->iterations},
+        {"seed", n->seed},
+        {"decisions", n->decisions},
     };
     snprintf(n->trials, sizeof n->trials, "%s", t->trials);
-    const adcgs_encode_note some[] = { { "settings", changes }, { "trials", n->trials } };
+    const adcgs_encode_note some[] = {{"settings", changes}, {"trials", n->trials}};
     memcpy(n->list, list, sizeof list);
     n->n = ADCGS_COUNTOF(list);
     for (size_t i = 0; i < ADCGS_COUNTOF(some); i++)
@@ -229,9 +233,10 @@ static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_context *w, adcgs
 static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_context *w, adcgs_error *error)
 {
     if (!adcgs_trainer_moves(w->t))
-        adcgs_cli_error(cli, ADCGS_OK, "%s: at iteration %u of %u nothing moves yet: the file shows a static, coarse scene; a "
-                                       "run of -n %u shows far more", w->target, w->t->iteration, w->t->config.iterations,
-                        ADCGS_MAX(w->t->iteration, 300));
+        adcgs_cli_error(cli, ADCGS_OK,
+                        "%s: at iteration %u of %u nothing moves yet: the file shows a static, coarse scene; a "
+                        "run of -n %u shows far more",
+                        w->target, w->t->iteration, w->t->config.iterations, ADCGS_MAX(w->t->iteration, 300));
     adcgs_progress_show(&w->progress, "finish  the state after iteration %u ...", w->t->iteration);
     const adcgs_status status = adcgs_trainer_finish(w->t, &w->last, error);
     adcgs_progress_clear(&w->progress);
@@ -323,7 +328,7 @@ adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, con
     if (!adcgs_enc_team_follows(&w->team))
         adcgs_progress_show(&w->progress, "start   %u view%s: matching ...", scene->n_views[ADCGS_SPLIT_TRAIN],
                             adcgs_s(scene->n_views[ADCGS_SPLIT_TRAIN]));
-    const int is_one_of_many = job->ranks && job->ranks->rank; /* the first rank reports for all */
+    const int is_one_of_many = job->ranks && job->ranks->rank;             /* the first rank reports for all */
     const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* live footage is not judged */
     adcgs_train_config config = job->config;
     config.judges_poses = tells && !w->diagnosed; /* by the first part of a scene */
@@ -382,7 +387,7 @@ static int looking(void *user, uint32_t done, uint32_t n)
 
 adcgs_status adcgs_enc_compensate_light(const adcgs_enc_job *job, adcgs_progress *progress, adcgs_error *error)
 {
-    const adcgs_image_store_config config = { .memory = job->o->memory, .progress = looking, .user = progress };
+    const adcgs_image_store_config config = {.memory = job->o->memory, .progress = looking, .user = progress};
     adcgs_fault found;
     if (!job->config.exposure_step_compensation)
         return ADCGS_OK;

@@ -30,34 +30,34 @@ typedef struct adcgs_enc_options {
 typedef struct adcgs_enc_context {
     const adcgs_enc_options *o;
     const char *target; /* the run's product: the stream, a part of it, or the state before lambda matters */
-    int keeps;    /* it saves its state at intervals */
+    int keeps;          /* it saves its state at intervals */
     adcgs_trainer *t;
-    adcgs_enc_team team; /* ranks that train with this one */
+    adcgs_enc_team team;        /* ranks that train with this one */
     uint32_t segment, segments; /* the segment in training, from 0; 0 segments: not cut, or number unknown */
-    int is_live; /* an interrupt ends the input, not the run */
-    char *base;   /* prefix of the run's temporary files: the checkpoint, and those of segments */
-    char *state;  /* the current checkpoint */
+    int is_live;                /* an interrupt ends the input, not the run */
+    char *base;                 /* prefix of the run's temporary files: the checkpoint, and those of segments */
+    char *state;                /* the current checkpoint */
     adcgs_progress progress;
     FILE *log;
     adcgs_train_report first; /* after the first iteration */
     double saved;
     adcgs_enc_preview preview;
-    int interrupts;   /* interrupts handled when training ended; further ones end the measurement */
-    int unsaved; /* the last checkpoint could not be written */
-    int cut_short; /* by interrupts: the file was made before the run's end */
+    int interrupts; /* interrupts handled when training ended; further ones end the measurement */
+    int unsaved;    /* the last checkpoint could not be written */
+    int cut_short;  /* by interrupts: the file was made before the run's end */
     adcgs_train_report last;
     /* Receives the progress instead of the display; nonzero: stop. */
     int (*on_progress)(void *user, const struct adcgs_enc_context *w);
     void *progress_user;
     size_t uncompressed_bytes;
     char trials[ADCGS_TRIALS_TEXT]; /**< figures of the trials, for the stream; "" without trials */
-    adcgs_buffer changes; /**< settings that differ from the preset's, for the stream */
-    uint32_t next_log; /**< iteration */
+    adcgs_buffer changes;           /**< settings that differ from the preset's, for the stream */
+    uint32_t next_log;              /**< iteration */
     adcgs_error log_error;
-    double begins;    /* time in the scene at which the trained part begins */
+    double begins;               /* time in the scene at which the trained part begins */
     adcgs_thumbnail *thumbnails; /* until the footage has been checked; NULL: no check */
-    unsigned diagnosed; /* kinds of faults of footage that were reported */
-    int told_room;    /* 1: the space for images was reported; 2: also that it is not enough */
+    unsigned diagnosed;          /* kinds of faults of footage that were reported */
+    int told_room;               /* 1: the space for images was reported; 2: also that it is not enough */
 } adcgs_enc_context;
 
 /** Notes in the stream on its making. */
@@ -73,10 +73,10 @@ typedef struct adcgs_enc_job {
     const adcgs_cli *cli;
     const adcgs_enc_options *o;
     adcgs_scene *scene;
-    adcgs_cuts cuts; /* n 0: the scene is not cut */
-    uint8_t *follows; /* [cuts.n] 1: the part is trained from the previous one */
+    adcgs_cuts cuts;          /* n 0: the scene is not cut */
+    uint8_t *follows;         /* [cuts.n] 1: the part is trained from the previous one */
     const adcgs_ranks *ranks; /* that train the segments together; NULL: this process alone */
-    const adcgs_plan *plan; /* plan of the training; NULL: none */
+    const adcgs_plan *plan;   /* plan of the training; NULL: none */
     adcgs_train_config config;
     adcgs_train_config whole; /* of the scene as one segment, if it is cut */
     adcgs_cpu_level cpu;

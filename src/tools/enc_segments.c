@@ -40,7 +40,7 @@ adcgs_status adcgs_enc_cut(adcgs_enc_job *job, double seconds, adcgs_error *erro
 /** The notes of a run that has ended, except lambda. */
 static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_context *w, const adcgs_enc_job *job)
 {
-    adcgs_trainer ended = { .config = job->config, .iteration = job->config.iterations };
+    adcgs_trainer ended = {.config = job->config, .iteration = job->config.iterations};
     memcpy(ended.trials, w->trials, sizeof ended.trials);
     adcgs_enc_make_notes(n, &ended, (const char *)w->changes.data);
 }
@@ -52,8 +52,8 @@ static adcgs_status load_before(adcgs_model *before, const adcgs_enc_context *w,
         return ADCGS_OK;
     if (job->ranks)
         adcgs_enc_part_await(w->base, w->segment - 1);
-    return job->plan ? adcgs_plan_part_model(before, job->plan, w->base, w->segment - 1, job->cpu, job->pool, error) :
-                       adcgs_enc_part_model(before, w->base, w->segment - 1, job->cpu, job->pool, error);
+    return job->plan ? adcgs_plan_part_model(before, job->plan, w->base, w->segment - 1, job->cpu, job->pool, error)
+                     : adcgs_enc_part_model(before, w->base, w->segment - 1, job->cpu, job->pool, error);
 }
 
 /** Adds notes on the part's plan and on the model that it continues. */
@@ -61,17 +61,17 @@ static void add_plan_notes(adcgs_enc_notes *n, const adcgs_enc_context *w, const
 {
     if (!job->plan)
         return;
-    n->list[n->n++] = (adcgs_encode_note){ ADCGS_NOTE_PLAN, job->plan->digest };
+    n->list[n->n++] = (adcgs_encode_note){ADCGS_NOTE_PLAN, job->plan->digest};
     if (!job->follows[w->segment])
         return;
     adcgs_md5_hex(w->t->before, n->follows);
-    n->list[n->n++] = (adcgs_encode_note){ ADCGS_NOTE_FOLLOWS, n->follows };
+    n->list[n->n++] = (adcgs_encode_note){ADCGS_NOTE_FOLLOWS, n->follows};
 }
 
 static adcgs_status learn_scene(adcgs_enc_context *w, const adcgs_enc_job *job, const adcgs_scene *scene, adcgs_time *spent,
                                 adcgs_error *error)
 {
-    adcgs_model before = { .n = 0 };
+    adcgs_model before = {.n = 0};
     adcgs_enc_notes n;
     const int resumes = job->plan || job->o->resume;
     w->next_log = 0;
@@ -145,8 +145,8 @@ adcgs_status adcgs_enc_segments_write(adcgs_enc_context *w, const adcgs_enc_job 
     adcgs_buffer_init(&bytes);
     for (uint32_t i = 0; job->ranks && i < job->cuts.n; i++)
         adcgs_enc_part_await(w->base, i);
-    adcgs_status status = adcgs_enc_parts_join(&stream, w->base, job->scene, &job->cuts, job->follows, job->cpu, job->pool,
-                                               error);
+    adcgs_status status =
+        adcgs_enc_parts_join(&stream, w->base, job->scene, &job->cuts, job->follows, job->cpu, job->pool, error);
     if (status == ADCGS_OK)
         status = adcgs_encode_verified(&stream, &bytes, job->cpu, job->pool, error);
     if (status == ADCGS_OK && job->o->or_whole)

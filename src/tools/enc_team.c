@@ -77,8 +77,8 @@ static adcgs_status doubt(adcgs_enc_team *t, int missing, adcgs_error *error)
         t->late(t->late_user, missing, host);
         t->late = NULL;
     }
-    return since < GONE_AFTER ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "interrupted; rank %d on %s does not answer", missing,
-                                                      host);
+    return since < GONE_AFTER ? ADCGS_OK
+                              : adcgs_fail(error, ADCGS_ERR_IO, "interrupted; rank %d on %s does not answer", missing, host);
 }
 
 static adcgs_status swap(void *user, const adcgs_ranks_part *out, int n_out, const adcgs_ranks_part *in, int n_in,
@@ -93,7 +93,7 @@ static adcgs_status swap(void *user, const adcgs_ranks_part *out, int n_out, con
             continue;
         }
         ADCGS_TRY(doubt(t, missing, error));
-        nanosleep(&(struct timespec){ 0, looks < YIELDS + NAPS ? NAP : LONG_NAP }, NULL);
+        nanosleep(&(struct timespec){0, looks < YIELDS + NAPS ? NAP : LONG_NAP}, NULL);
     }
     return ADCGS_OK;
 }
@@ -105,7 +105,7 @@ typedef struct card {
 
 adcgs_status adcgs_enc_team_meet(adcgs_enc_team *t, adcgs_cpu_level level, adcgs_error *error)
 {
-    card cards[ADCGS_TREE_MOST] = { { .level = 0 } };
+    card cards[ADCGS_TREE_MOST] = {{.level = 0}};
     if (t->team.size < 2)
         return ADCGS_OK;
     t->team.swap = swap;
@@ -119,9 +119,10 @@ adcgs_status adcgs_enc_team_meet(adcgs_enc_team *t, adcgs_cpu_level level, adcgs
     for (int i = 0; i < t->team.size; i++) {
         memcpy(t->hosts[i], cards[i].host, sizeof *t->hosts);
         if (cards[i].level != cards[0].level)
-            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "rank %d on %s has kernels of level %s, rank %d those of %s, which "
-                                                            "train differently: give --cpu", t->first + i, cards[i].host,
-                              adcgs_cpu_name((adcgs_cpu_level)cards[i].level), t->first,
+            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED,
+                              "rank %d on %s has kernels of level %s, rank %d those of %s, which "
+                              "train differently: give --cpu",
+                              t->first + i, cards[i].host, adcgs_cpu_name((adcgs_cpu_level)cards[i].level), t->first,
                               adcgs_cpu_name((adcgs_cpu_level)cards[0].level));
     }
     return ADCGS_OK;

@@ -14,7 +14,7 @@
 typedef struct adcgs_enc_team {
     adcgs_team team; /**< size 1: the rank trains alone; 0: it has nothing to do */
     const adcgs_ranks *ranks;
-    int first;                     /**< the team's first rank */
+    int first;                       /**< the team's first rank */
     char (*hosts)[ADCGS_RANKS_HOST]; /**< [team.size] */
     /** Called once if the run is interrupted while it waits for another rank; or NULL. */
     void (*late)(void *user, int rank, const char *host);

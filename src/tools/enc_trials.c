@@ -21,15 +21,20 @@ static void tell(const adcgs_enc_job *job, const adcgs_trials *t)
         return;
     for (uint32_t i = 0; i < t->n; i++)
         if (t->of[i].dropped)
-            adcgs_cli_note(job->cli, "%s: without %s %u held-out images have %.2f dB instead of %.2f in trials of %u iterations: "
-                                     "it is turned off; --set trial_share=0 keeps it", job->scene->directory,
-                           adcgs_mechanism_names[t->of[i].mechanism], t->views, t->of[i].without, t->of[i].with, t->iterations);
+            adcgs_cli_note(job->cli,
+                           "%s: without %s %u held-out images have %.2f dB instead of %.2f in trials of %u iterations: "
+                           "it is turned off; --set trial_share=0 keeps it",
+                           job->scene->directory, adcgs_mechanism_names[t->of[i].mechanism], t->views, t->of[i].without,
+                           t->of[i].with, t->iterations);
 }
 
 adcgs_status adcgs_enc_try(adcgs_enc_job *job, adcgs_enc_context *w, adcgs_error *error)
 {
-    const adcgs_trials_options options = { .cpu = job->cpu, .pool = job->pool, .memory = job->o->memory, .progress = show,
-                                           .user = w };
+    const adcgs_trials_options options = {.cpu = job->cpu,
+                                          .pool = job->pool,
+                                          .memory = job->o->memory,
+                                          .progress = show,
+                                          .user = w};
     adcgs_trials trials;
     const char *const state = job->o->finish ? job->o->finish : job->o->resume;
     if (state && !job->o->has_segment)

@@ -17,8 +17,10 @@ static adcgs_status heed(void *user, const adcgs_view_score *score, adcgs_error 
 {
     const int *const interrupts = user;
     (void)score;
-    return adcgs_interrupts() == *interrupts ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "interrupted during the comparison; "
-                                                                                     "continue it with --resume");
+    return adcgs_interrupts() == *interrupts ? ADCGS_OK
+                                             : adcgs_fail(error, ADCGS_ERR_IO,
+                                                          "interrupted during the comparison; "
+                                                          "continue it with --resume");
 }
 
 /** Measures a stream's PSNR on the training views. */
@@ -26,7 +28,7 @@ static adcgs_status measure(double *psnr, const adcgs_buffer *bytes, const adcgs
 {
     adcgs_config config;
     adcgs_decoder *decoder = NULL;
-    adcgs_evaluation result = { .n = 0 };
+    adcgs_evaluation result = {.n = 0};
     int interrupts = adcgs_interrupts();
     adcgs_config_init(&config, sizeof config);
     config.cpu = job->cpu;

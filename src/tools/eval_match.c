@@ -54,9 +54,10 @@ static void match_cameras(const adcgs_match *m, const adcgs_info *info)
         adcgs_cli_note(m->cli, "%s: %d of its %d camera%s %s not in %s: check that it was made of this scene", m->file, n[0],
                        info->cameras, adcgs_s((uint64_t)info->cameras), n[0] == 1 ? "is" : "are", m->scene_name);
     else if (2 * n[1] > info->cameras)
-        adcgs_cli_note(m->cli, "%s: %d of its %d camera%s %s other lenses in %s: check that it was made of these "
-                               "images", m->file, n[1],
-                       info->cameras, adcgs_s((uint64_t)info->cameras), n[1] == 1 ? "has" : "have", m->scene_name);
+        adcgs_cli_note(m->cli,
+                       "%s: %d of its %d camera%s %s other lenses in %s: check that it was made of these "
+                       "images",
+                       m->file, n[1], info->cameras, adcgs_s((uint64_t)info->cameras), n[1] == 1 ? "has" : "have", m->scene_name);
 }
 
 /** Counts the views of the split outside the stream's time, with a tolerance of one frame. */
@@ -79,8 +80,8 @@ adcgs_status adcgs_match_check(const adcgs_match *m, adcgs_error *error)
     if (outside && outside == m->scene->n_views[m->split])
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "%.80s lasts from %g to %g s, and no %s view of %.80s lies in that time: give its scene, or its "
-                          "--frames", m->file,
-                          info.time_start, info.time_end, adcgs_split_name(m->split), m->scene_name);
+                          "--frames",
+                          m->file, info.time_start, info.time_end, adcgs_split_name(m->split), m->scene_name);
     return ADCGS_OK;
 }
 
@@ -92,8 +93,8 @@ void adcgs_match_report(const adcgs_match *m, const adcgs_evaluation *evaluation
     const uint32_t outside = count_outside(m, &info);
     if (outside)
         adcgs_cli_note(m->cli, "%s: lasts from %g to %g s, but %u of the %u %s views of %s lie outside that time: check --frames",
-                       m->file, info.time_start, info.time_end, outside, m->scene->n_views[m->split],
-                       adcgs_split_name(m->split), m->scene_name);
+                       m->file, info.time_start, info.time_end, outside, m->scene->n_views[m->split], adcgs_split_name(m->split),
+                       m->scene_name);
     match_cameras(m, &info);
     if (evaluation->psnr < PSNR_OF_NOTHING)
         adcgs_cli_note(m->cli, "%s: its views are nothing like the images of %s (%.1f dB): check that it was made of this scene",

@@ -250,8 +250,7 @@ static void text_end(const adcgs_eval_report *r, const double *mean, const adcgs
     printf("%-35s", title);
     text_values(r, mean, 2);
     if (r->box && r->of_all[ADCGS_EVAL_CROP_PSNR].n)
-        printf("the box is seen in %u view%s\n", r->of_all[ADCGS_EVAL_CROP_PSNR].n,
-               adcgs_s(r->of_all[ADCGS_EVAL_CROP_PSNR].n));
+        printf("the box is seen in %u view%s\n", r->of_all[ADCGS_EVAL_CROP_PSNR].n, adcgs_s(r->of_all[ADCGS_EVAL_CROP_PSNR].n));
     else if (r->box)
         printf("no view sees the box\n");
     if ((r->measure & ADCGS_MEASURE_TIME) && !r->n_cameras && !only_known(r))

@@ -53,9 +53,9 @@ typedef struct adcgs_eval_report {
     int as_text;
     adcgs_json json;
     adcgs_atomic atomic;
-    FILE *table;                            /**< CSV output; NULL: none */
+    FILE *table; /**< CSV output; NULL: none */
     adcgs_eval_sum of_camera[ADCGS_EVAL_COLUMNS], of_all[ADCGS_EVAL_COLUMNS];
-    uint32_t camera;                        /**< the camera of of_camera */
+    uint32_t camera; /**< the camera of of_camera */
     adcgs_eval_camera *cameras;
     uint32_t n_cameras;
 } adcgs_eval_report;

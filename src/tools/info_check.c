@@ -29,8 +29,7 @@ static void print_usable(const char *path, const adcgs_stream *s, uint32_t fault
 {
     const int layers = adcgs_params_layers(&s->params);
     adcgs_text_show(stdout, path);
-    printf(": %u fault%s; %u segment%s usable\n", faults, faults == 1 ? "" : "s", s->n_segments,
-           s->n_segments == 1 ? "" : "s");
+    printf(": %u fault%s; %u segment%s usable\n", faults, faults == 1 ? "" : "s", s->n_segments, s->n_segments == 1 ? "" : "s");
     for (uint32_t i = 0; faults && i < s->n_segments; i++)
         printf("  %g .. %g s, %d of %d layer%s intact, %d of %d tier%s\n", s->segments[i].time_start, s->segments[i].time_end,
                s->segments[i].layers, layers, adcgs_s((uint64_t)layers), s->segments[i].finest + 1 - s->segments[i].absent,
@@ -53,7 +52,7 @@ static adcgs_status write_repaired(adcgs_stream *s, const char *path, adcgs_erro
 static adcgs_status check(adcgs_read_at_fn read, void *user, uint64_t size, const char *path, const char *repaired,
                           uint32_t *faults, adcgs_error *error)
 {
-    adcgs_read_options options = { .log = { print_fault, (void *)(uintptr_t)path } };
+    adcgs_read_options options = {.log = {print_fault, (void *)(uintptr_t)path}};
     adcgs_stream stream;
     ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &options.cpu, error));
     adcgs_status status = adcgs_stream_salvage(&stream, read, user, size, &options, faults, error);
@@ -92,9 +91,9 @@ adcgs_status adcgs_info_check(const char *path, const char *repaired, uint32_t *
     FILE *file = fopen(path, "rb");
     if (!file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
-    const adcgs_status status = fseeko(file, 0, SEEK_END) ?
-                                    adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno)) :
-                                    check(adcgs_file_read_at, file, (uint64_t)ftello(file), path, repaired, faults, error);
+    const adcgs_status status = fseeko(file, 0, SEEK_END)
+                                    ? adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno))
+                                    : check(adcgs_file_read_at, file, (uint64_t)ftello(file), path, repaired, faults, error);
     fclose(file);
     return status;
 }

@@ -40,8 +40,9 @@ static adcgs_status fit(adcgs_stream *s, uint64_t bytes, adcgs_buffer *out, adcg
         if (out->size <= bytes)
             return ADCGS_OK;
         if (!m)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "--bytes %llu: the stream has %zu bytes without its finer tiers: give a "
-                                                      "larger --bytes",
+            return adcgs_fail(error, ADCGS_ERR_USAGE,
+                              "--bytes %llu: the stream has %zu bytes without its finer tiers: give a "
+                              "larger --bytes",
                               (unsigned long long)bytes, out->size);
         ADCGS_TRY(drop_tier(m, error));
     }

@@ -9,9 +9,9 @@
 void adcgs_info_list_components(const adcgs_bytes *b, adcgs_info_component out[ADCGS_INFO_COMPONENTS])
 {
     const adcgs_info_component list[ADCGS_INFO_COMPONENTS] = {
-        { "header", b->header },     { "networks", b->networks }, { "geometry", b->geometry }, { "layer0", b->layer[0] },
-        { "layer1", b->layer[1] },   { "layer2", b->layer[2] },   { "layer3", b->layer[3] },   { "layer4", b->layer[4] },
-        { "cameras", b->cameras },   { "metadata", b->metadata },
+        {"header", b->header},   {"networks", b->networks}, {"geometry", b->geometry}, {"layer0", b->layer[0]},
+        {"layer1", b->layer[1]}, {"layer2", b->layer[2]},   {"layer3", b->layer[3]},   {"layer4", b->layer[4]},
+        {"cameras", b->cameras}, {"metadata", b->metadata},
     };
     memcpy(out, list, sizeof list);
 }
@@ -28,7 +28,7 @@ uint32_t adcgs_info_count_gaussians(const adcgs_model *m)
 adcgs_status adcgs_info_kept(const adcgs_info_report *r, uint32_t segment, uint32_t *same, uint32_t *refined, adcgs_error *error)
 {
     const adcgs_model *now = &r->stream.segments[segment];
-    adcgs_inter kept = { .n = 0 };
+    adcgs_inter kept = {.n = 0};
     *same = *refined = 0;
     if (!now->predicted)
         return ADCGS_OK;

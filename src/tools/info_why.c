@@ -38,8 +38,8 @@ static void print_bytes(const adcgs_info_report *r)
     const uint64_t features = b->layer[0] + b->layer[1] + b->layer[2] + b->layer[3] + b->layer[4];
     const uint32_t moving = r->stream.params.time_rows ? i->anchors - i->static_anchors : 0;
     print_share("features", features, b->total);
-    printf("  of %u anchors (%u moving), with %u primitives, %.1f of at most %d each\n", i->anchors,
-           moving, i->gaussians, (double)i->gaussians / (double)i->anchors, i->k);
+    printf("  of %u anchors (%u moving), with %u primitives, %.1f of at most %d each\n", i->anchors, moving, i->gaussians,
+           (double)i->gaussians / (double)i->anchors, i->k);
     print_share("positions", b->geometry, b->total);
     printf("  %.1f bits an anchor\n", 8.0 * (double)b->geometry / (double)i->anchors);
     print_share("networks", b->networks, b->total);
@@ -101,7 +101,7 @@ static void print_setting(const adcgs_stream *stream, const char *key)
 
 void adcgs_info_why(const adcgs_info_report *r, const char *name)
 {
-    static const char *const settings[] = { "preset", "iterations", "lambda", "settings", "trials" };
+    static const char *const settings[] = {"preset", "iterations", "lambda", "settings", "trials"};
     const char *const list = find_meta(&r->stream, "decisions");
     adcgs_text_show(stdout, name);
     printf(": %llu bytes\n\n", (unsigned long long)r->info.bytes.total);

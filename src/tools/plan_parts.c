@@ -72,8 +72,8 @@ static adcgs_status check(const adcgs_stream *one, const adcgs_plan *plan, uint3
     if (strcmp(of, plan->digest))
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: belongs to another plan", name);
     const char *const what = difference(one, plan, part);
-    return what ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: its %s is not that of segment %u of the plan", name, what, part + 1) :
-                  ADCGS_OK;
+    return what ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: its %s is not that of segment %u of the plan", name, what, part + 1)
+                : ADCGS_OK;
 }
 
 adcgs_status adcgs_plan_part_load(adcgs_stream *one, const adcgs_plan *plan, const char *base, uint32_t part, adcgs_cpu_level cpu,
@@ -96,8 +96,8 @@ static adcgs_status need_part(adcgs_stream *one, const adcgs_plan *plan, const c
 {
     int found;
     ADCGS_TRY(adcgs_plan_part_load(one, plan, base, part, cpu, pool, &found, error));
-    return found ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%s.%u.adcgs: missing: train segment %u first", base, part + 1,
-                                         part + 1);
+    return found ? ADCGS_OK
+                 : adcgs_fail(error, ADCGS_ERR_IO, "%s.%u.adcgs: missing: train segment %u first", base, part + 1, part + 1);
 }
 
 adcgs_status adcgs_plan_part_model(adcgs_model *model, const adcgs_plan *plan, const char *base, uint32_t part,
@@ -177,7 +177,7 @@ static adcgs_status add_part(adcgs_stream *stream, adcgs_stream *one, const adcg
 adcgs_status adcgs_plan_join(adcgs_stream *stream, const adcgs_plan *plan, const char *base, adcgs_cpu_level cpu,
                              adcgs_pool *pool, adcgs_error *error)
 {
-    uint8_t digest[16] = { 0 };
+    uint8_t digest[16] = {0};
     adcgs_stream_init(stream);
     for (uint32_t i = 0; i < plan->cuts.n; i++) {
         adcgs_stream one;

@@ -22,8 +22,9 @@
 
 adcgs_status adcgs_sweep_make_folder(const adcgs_sweep *sweep, adcgs_error *error)
 {
-    return mkdir(sweep->directory, 0777) == 0 || errno == EEXIST ? ADCGS_OK :
-           adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", sweep->directory, strerror(errno));
+    return mkdir(sweep->directory, 0777) == 0 || errno == EEXIST
+               ? ADCGS_OK
+               : adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", sweep->directory, strerror(errno));
 }
 
 /** Names the file of a claim. */

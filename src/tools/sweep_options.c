@@ -116,8 +116,7 @@ static int parse_lists(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
         const char *text, *setting;
         double *out;
         int *n;
-    } each[] = {{l->lambdas, "lambda", sweep->lambda, &sweep->n_lambda},
-                {l->seeds, "seed", sweep->seed, &sweep->n_seed}};
+    } each[] = {{l->lambdas, "lambda", sweep->lambda, &sweep->n_lambda}, {l->seeds, "seed", sweep->seed, &sweep->n_seed}};
     for (size_t i = 0; i < ADCGS_COUNTOF(each); i++) {
         const adcgs_setting *s = adcgs_setting_find(each[i].setting);
         const int whole = s->kind != ADCGS_SETTING_REAL;
@@ -126,8 +125,10 @@ static int parse_lists(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
             if (each[i].out[j] != (double)(int64_t)each[i].out[j])
                 *each[i].n = -1;
         if (*each[i].n < 0)
-            return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "bad list \"%s\": expected at most %d %snumbers from %g to %g, with "
-                                   "commas between", each[i].text, ADCGS_SWEEP_LIST, whole ? "whole " : "", s->min, s->max);
+            return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
+                                   "bad list \"%s\": expected at most %d %snumbers from %g to %g, with "
+                                   "commas between",
+                                   each[i].text, ADCGS_SWEEP_LIST, whole ? "whole " : "", s->min, s->max);
     }
     qsort(sweep->lambda, (size_t)sweep->n_lambda, sizeof *sweep->lambda, compare_double);
     const int bad = parse_grid(cli, l, sweep);
@@ -135,8 +136,10 @@ static int parse_lists(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
         return bad;
     sweep->yardsticks = l->yardsticks ? parse_yardsticks(l->yardsticks) : ADCGS_YARD_ALL;
     if (sweep->yardsticks < 0)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--yardsticks %s: expected all, none, or some of networks, uncompressed and "
-                               "gaussians", l->yardsticks);
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
+                               "--yardsticks %s: expected all, none, or some of networks, uncompressed and "
+                               "gaussians",
+                               l->yardsticks);
     return -1;
 }
 
@@ -252,17 +255,20 @@ static size_t list_options(adcgs_option out[ADCGS_SWEEP_OPTIONS], adcgs_sweep_re
         {"k", 0, ADCGS_OPTION_STRING, &g->l.ks, 0, 0, "A,B,C", "values of the encoder's --k (default: the preset's)", NULL, NULL},
         {"grid", 0, ADCGS_OPTION_STRING, &g->l.grid, 0, 0, "NAME=A,B,...",
          "a curve for each combination of values of any settings of\nthe encoder, and of preset, time-limit, segment, key,\n"
-         "threads and cpu; blanks between two such lists", g->names, NULL},
+         "threads and cpu; blanks between two such lists",
+         g->names, NULL},
         {"seeds", 0, ADCGS_OPTION_STRING, &g->l.seeds, 0, 0, "A,B,C",
          "seeds of each point; figures are means over them (default:\nthe encoder's seed)", NULL, NULL},
         {"yardsticks", 0, ADCGS_OPTION_STRING, &g->l.yardsticks, 0, 0, "NAME,...",
          "baselines: networks (of 32 bits; no run), uncompressed (two\n"
-         "runs; by zstd and xz), gaussians (a curve and a run); all\n(default) or none", NULL, NULL},
+         "runs; by zstd and xz), gaussians (a curve and a run); all\n(default) or none",
+         NULL, NULL},
         {"against", 0, ADCGS_OPTION_FILE, &sweep->against, 0, 0, "DIR,...",
          "folders of earlier sweeps of the scene to compare with, of\nany version or settings", NULL, NULL},
         {"add", 0, ADCGS_OPTION_STRING, &sweep->tables, 0, 0, "NAME=FILE,...",
          "tables of other methods to plot, CSV with columns bytes and\npsnr, and optionally ssim, dynamic_psnr, cpu_seconds,\n"
-         "frames_per_second, source", NULL, NULL},
+         "frames_per_second, source",
+         NULL, NULL},
         {"ablation", 0, ADCGS_OPTION_FLAG, &sweep->ablation, 0, 0, NULL,
          "train the stages of the method one after another, and\n5, 10 and 15 primitives per anchor (nine runs)", NULL, NULL},
         {"preset", 'p', ADCGS_OPTION_STRING, &sweep->preset, 0, 0, "NAME", "preset of the encoder (default: its own)",
@@ -282,12 +288,14 @@ static size_t list_options(adcgs_option out[ADCGS_SWEEP_OPTIONS], adcgs_sweep_re
          "keep the finished runs of an earlier sweep with the same\nsettings, and continue the others", NULL, NULL},
         {"list", 0, ADCGS_OPTION_FLAG, &request->list, 0, 0, NULL,
          "run nothing: print a command for each run, one a line, for\nany number of machines; with --resume only those that are\n"
-         "not finished", NULL, NULL},
+         "not finished",
+         NULL, NULL},
         {"run", 0, ADCGS_OPTION_STRING, &request->run, 0, 0, "NAME",
          "name of the only run to execute; a begun run continues, a\nfinished run stays", NULL, NULL},
         {"collect", 0, ADCGS_OPTION_FILE, &request->collect, 0, 0, "DIR",
          "make tables and charts of the finished runs of --list in\n"
-         "this folder, and name the others; no other options", NULL, NULL},
+         "this folder, and name the others; no other options",
+         NULL, NULL},
     };
     memcpy(out, table, sizeof table);
     return ADCGS_COUNTOF(table);
@@ -296,9 +304,11 @@ static size_t list_options(adcgs_option out[ADCGS_SWEEP_OPTIONS], adcgs_sweep_re
 /** Requires --collect alone, since its folder stores the rest. */
 static int check_alone(const adcgs_cli *cli, const adcgs_sweep_request *r, int operands)
 {
-    return operands || r->words.n || r->sweep.directory || r->list || r->run || r->sweep.resume ?
-               adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--collect excludes other options and operands: its folder stores "
-                                                     "them") : -1;
+    return operands || r->words.n || r->sweep.directory || r->list || r->run || r->sweep.resume
+               ? adcgs_cli_error(cli, ADCGS_ERR_USAGE,
+                                 "--collect excludes other options and operands: its folder stores "
+                                 "them")
+               : -1;
 }
 
 int adcgs_sweep_parse(adcgs_cli *cli, adcgs_sweep_request *request, int argc, char **argv)

@@ -165,7 +165,9 @@ static int write_all(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs
     adcgs_cli_note(cli, "wrote %s/index.html, sweep.csv, sweep.json%s%s%s%s", sweep->directory,
                    plan->n_stages ? ", ablation.csv" : "", plan->shown.n_portions ? ", portions.csv" : "",
                    plan->shown.n_views ? ", views.csv" : "",
-                   charts ? ", charts as .svg and .pdf" : plan->n_curves ? "; no chart: install gnuplot" : "");
+                   charts           ? ", charts as .svg and .pdf"
+                   : plan->n_curves ? "; no chart: install gnuplot"
+                                    : "");
     return 0;
 }
 

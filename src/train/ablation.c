@@ -37,9 +37,17 @@ adcgs_status adcgs_train_leave_out(adcgs_train_config *c, const char *parts, adc
     static const struct {
         const char *name;
         int bits;
-    } known[] = { { "none", 0 }, { "coarse", COARSE }, { "fine", FINE }, { "deformation", COARSE | FINE }, { "rate", RATE },
-                  { "densification", DENSIFICATION }, { "anchors", ANCHORS }, { "weight_steps", WEIGHT_STEPS },
-                  { "removal", REMOVAL }, { "refinement", DENSIFICATION }, { "lattice", WEIGHT_STEPS } };
+    } known[] = {{"none", 0},
+                 {"coarse", COARSE},
+                 {"fine", FINE},
+                 {"deformation", COARSE | FINE},
+                 {"rate", RATE},
+                 {"densification", DENSIFICATION},
+                 {"anchors", ANCHORS},
+                 {"weight_steps", WEIGHT_STEPS},
+                 {"removal", REMOVAL},
+                 {"refinement", DENSIFICATION},
+                 {"lattice", WEIGHT_STEPS}};
     int bits = 0;
     for (const char *at = parts;; at++) {
         const size_t length = strcspn(at, ",");
@@ -49,7 +57,8 @@ adcgs_status adcgs_train_leave_out(adcgs_train_config *c, const char *parts, adc
         if (i == ADCGS_COUNTOF(known))
             return adcgs_fail(error, ADCGS_ERR_USAGE,
                               "cannot leave out '%.*s': expected none, coarse, fine, deformation, rate, densification, anchors, "
-                              "removal or weight_steps", (int)length, at);
+                              "removal or weight_steps",
+                              (int)length, at);
         bits |= known[i].bits;
         at += length;
         if (!*at)

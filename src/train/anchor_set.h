@@ -8,9 +8,9 @@
 /** The next anchors: their positions, and the current anchor from which each takes its values. */
 typedef struct adcgs_anchor_set {
     uint32_t n, capacity;
-    uint32_t (*pos)[3];       /**< cells of the grid */
+    uint32_t (*pos)[3]; /**< cells of the grid */
     uint32_t *source, *order;
-    uint8_t *fresh;           /**< 1: a new anchor */
+    uint8_t *fresh; /**< 1: a new anchor */
 } adcgs_anchor_set;
 
 adcgs_status adcgs_anchor_set_init(adcgs_anchor_set *set, uint32_t capacity, adcgs_error *error);

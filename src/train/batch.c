@@ -59,8 +59,7 @@ static void give(adcgs_trainer *t, const float *sum)
 static size_t means_at(const adcgs_trainer *t, int i, float **at)
 {
     *at = i < ADCGS_P_ANCHOR ? t->pass->mu[i] : t->pass->factor;
-    return i < ADCGS_P_ANCHOR ? t->f->param[i].n :
-                                (size_t)t->f->groups * ADCGS_LANES * (size_t)adcgs_params_steps(&t->f->params);
+    return i < ADCGS_P_ANCHOR ? t->f->param[i].n : (size_t)t->f->groups * ADCGS_LANES * (size_t)adcgs_params_steps(&t->f->params);
 }
 
 static adcgs_status keep_means(adcgs_trainer *t, adcgs_error *error)
@@ -108,7 +107,7 @@ static adcgs_status run_passes(adcgs_trainer *t, double progress, uint32_t first
             put_means_back(t);
         ADCGS_TRY(adcgs_view_pass(t, progress, t->iteration * t->config.batch + i, &stats, &t->batch.results[i], error));
         take_gradients(t->f, t->batch.sum[*n]);
-        *n = adcgs_tree_add(parts, *n, (adcgs_tree_part){ i, 1, t->batch.sum[*n] }, t->batch.size);
+        *n = adcgs_tree_add(parts, *n, (adcgs_tree_part){i, 1, t->batch.sum[*n]}, t->batch.size);
     }
     return ADCGS_OK;
 }
@@ -131,8 +130,8 @@ adcgs_status adcgs_batch_run(adcgs_trainer *t, double progress, adcgs_error *err
 {
     const uint32_t n = t->config.batch;
     memset(t->batch.results, 0, n * sizeof *t->batch.results);
-    ADCGS_TRY(n > 1 ? look_at_many(t, progress, error) :
-                      adcgs_view_pass(t, progress, t->iteration, &t->stats, t->batch.results, error));
+    ADCGS_TRY(n > 1 ? look_at_many(t, progress, error)
+                    : adcgs_view_pass(t, progress, t->iteration, &t->stats, t->batch.results, error));
     for (uint32_t i = 0; i < n; i++)
         adcgs_view_pass_apply(t, progress, t->iteration * n + i, &t->batch.results[i]);
     return ADCGS_OK;

@@ -40,7 +40,7 @@ adcgs_status adcgs_bound_gains(adcgs_trainer *t, adcgs_error *error)
     double *brightness = adcgs_alloc(NULL, e->n, sizeof *brightness, error);
     adcgs_status status = of && brightness ? ADCGS_OK : adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < e->n; i++)
-        of[i] = (amount){ 0, 0 };
+        of[i] = (amount){0, 0};
     for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
         const adcgs_view *v = &t->views[i].view;
         status = adcgs_image_store_get(t->pictures, i, t->taken, error);

@@ -20,7 +20,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
+static const char magic[8] = {'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P'};
 enum { FORMAT = 33 };
 
 typedef struct walk {
@@ -105,8 +105,8 @@ static uint32_t add_camera(uint32_t crc, const adcgs_scene_view *v)
 {
     const adcgs_camera *c = &v->camera;
     const adcgs_lens *l = &v->lens;
-    const double numbers[] = { c->width, c->height, c->fx, c->fy, c->cx, c->cy, c->near_plane, l->width, l->height, l->fx, l->fy,
-                               l->cx, l->cy, l->skew, l->k8, l->p[0], l->p[1], (double)l->is_fisheye };
+    const double numbers[] = {c->width, c->height, c->fx, c->fy, c->cx,   c->cy, c->near_plane, l->width, l->height,
+                              l->fx,    l->fy,     l->cx, l->cy, l->skew, l->k8, l->p[0],       l->p[1],  (double)l->is_fisheye};
     crc = adcgs_crc32c(crc, numbers, sizeof numbers);
     crc = adcgs_crc32c(crc, l->k, sizeof l->k);
     return adcgs_crc32c(crc, c->cam_to_world, sizeof c->cam_to_world);
@@ -187,8 +187,8 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
 /** Hidden layers may be narrower than at the start. */
 static void walk_width(walk *w, adcgs_fmodel *f, int group)
 {
-    const int from[ADCGS_P_COUNT] = { [ADCGS_P_THETA] = f->shape.theta_width, [ADCGS_P_OMEGA] = f->shape.omega_width,
-                                      [ADCGS_P_VARPI] = f->shape.varpi_width };
+    const int from[ADCGS_P_COUNT] =
+        {[ADCGS_P_THETA] = f->shape.theta_width, [ADCGS_P_OMEGA] = f->shape.omega_width, [ADCGS_P_VARPI] = f->shape.varpi_width};
     int width = f->mlp[group].width;
     visit(w, &width, sizeof width);
     if (!f->mlp[group].hidden || !w->in)
@@ -282,7 +282,7 @@ static void walk_all(walk *w, const adcgs_trainer *trainer)
 
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error)
 {
-    walk w = { .out = out };
+    walk w = {.out = out};
     walk_all(&w, trainer);
     return out->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a checkpoint") : ADCGS_OK;
 }
@@ -314,7 +314,7 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
 {
     adcgs_reader reader;
     adcgs_reader_init(&reader, data, size);
-    walk w = { .in = &reader };
+    walk w = {.in = &reader};
     walk_config(&w, t);
     if (w.differs[0])
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s", w.differs);
@@ -354,7 +354,7 @@ static adcgs_status save(const adcgs_trainer *t, const adcgs_buffer *snapshot, c
     adcgs_atomic atomic;
     uint8_t crc[4];
     ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
-    walk w = { .file = atomic.file };
+    walk w = {.file = atomic.file};
     errno = 0;
     visit(&w, (void *)(uintptr_t)magic, sizeof magic);
     visit(&w, (void *)(uintptr_t)t->content, sizeof t->content);
@@ -403,8 +403,7 @@ static adcgs_status restore_file(adcgs_trainer *t, const uint8_t *data, size_t s
         return ADCGS_OK;
     ADCGS_TRY(find_content(t, error));
     if (memcmp(data + sizeof magic, t->content, sizeof t->content))
-        return adcgs_fail(error, ADCGS_ERR_DATA,
-                          "saved with another scene: the files of the training images have changed");
+        return adcgs_fail(error, ADCGS_ERR_DATA, "saved with another scene: the files of the training images have changed");
     return ADCGS_OK;
 }
 

@@ -49,15 +49,14 @@ static int curriculum_is_sound(const adcgs_trainer *t)
 
 static int flags_are_sound(const adcgs_trainer *t)
 {
-    const uint8_t flags[] = { t->lambda_used, t->fixed_unchanging, t->motion_tested, t->pruned, t->tiered, t->rounding,
-                             t->frozen };
+    const uint8_t flags[] = {t->lambda_used, t->fixed_unchanging, t->motion_tested, t->pruned, t->tiered, t->rounding, t->frozen};
     return are_at_most(flags, sizeof flags, 1) && t->units_pruned <= 2 && (!t->frozen || t->rounding);
 }
 
 /** Checks the control variables. Trained values need not be finite: a run that finds one that is not rolls back by itself. */
 static int numbers_are_sound(const adcgs_trainer *t)
 {
-    const double numbers[] = { (double)t->lr_scale, t->contrast, t->lambda, t->least_mse, t->elapsed.clock, t->elapsed.cpu };
+    const double numbers[] = {(double)t->lr_scale, t->contrast, t->lambda, t->least_mse, t->elapsed.clock, t->elapsed.cpu};
     for (size_t i = 0; i < ADCGS_COUNTOF(numbers); i++)
         if (!isfinite(numbers[i]) || numbers[i] < 0)
             return 0;

@@ -30,7 +30,7 @@ static void take_stands(const adcgs_fmodel *f, stand stands[ADCGS_BODIES_MAX])
     adcgs_bodies_pose(f, f->param[ADCGS_P_TIME].p, place);
     for (int b = 0; b < f->params.bodies; b++) {
         stand *s = &stands[b];
-        *s = (stand){ .half = NEAR };
+        *s = (stand){.half = NEAR};
         for (int i = 0; i < 4; i++)
             s->q[i] = (double)place[b].q[i];
         for (int a = 0; a < 3; a++) {
@@ -97,7 +97,7 @@ static void turn(const double q[4], int back, const double x[3], double out[3])
 static void go_on_from(adcgs_stereo_body *body, uint32_t frames, const stand *s)
 {
     const adcgs_stereo_pose first = body->pose[0];
-    const double back[4] = { first.q[0], -first.q[1], -first.q[2], -first.q[3] };
+    const double back[4] = {first.q[0], -first.q[1], -first.q[2], -first.q[3]};
     double away[3], rest[3], since[4];
     for (int a = 0; a < 3; a++)
         away[a] = s->to[a] - body->pivot[a] - first.way[a];
@@ -136,7 +136,7 @@ static void name_bodies(const adcgs_fmodel *f, adcgs_stereo *found, stand *stand
 adcgs_status adcgs_continue_bodies(const adcgs_fmodel *f, adcgs_stereo *found, adcgs_error *error)
 {
     stand stands[ADCGS_BODIES_MAX];
-    uint8_t number[ADCGS_BODIES_MAX] = { 0 };
+    uint8_t number[ADCGS_BODIES_MAX] = {0};
     if (!f->params.bodies || !found->n_bodies)
         return ADCGS_OK;
     adcgs_stereo_body *bodies = adcgs_alloc(NULL, f->params.bodies, sizeof *bodies, error);

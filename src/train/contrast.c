@@ -11,7 +11,7 @@ static const double LEAST = 0.1, MOST = 4;
 adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_error *error)
 {
     const uint32_t n = ADCGS_MIN(t->n_views, PICTURES_MOST);
-    double sum[3] = { 0, 0, 0 }, square = 0, count = 0;
+    double sum[3] = {0, 0, 0}, square = 0, count = 0;
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t view = (uint32_t)((uint64_t)i * t->n_views / n);
         const adcgs_view *v = &t->views[view].view;

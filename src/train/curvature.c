@@ -50,7 +50,7 @@ static adcgs_status project_views(adcgs_trainer *t, float *const h[ADCGS_P_ANCHO
     for (uint32_t i = 0; i < n; i++) {
         const adcgs_train_view *v = &t->views[(uint64_t)i * t->n_views / n];
         const size_t values = 3 * (size_t)v->view.width * (size_t)v->view.height;
-        adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+        adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
         ADCGS_TRY(adcgs_view_render(t, &v->view, ADCGS_MEAN_LIGHT, t->image, 1, error));
         for (uint32_t probe = 0; probe < PROBES; probe++) {
             random_signs(t->grad, values, (uint32_t)adcgs_random64(t->config.seed, 4000 + probe, i));
@@ -76,7 +76,7 @@ static void move_values(adcgs_trainer *t, int group, const float *still, float d
 
 /** Loss increase from moving a group, averaged over both directions, and the increase that h predicts. */
 static adcgs_status measured_move(adcgs_trainer *t, int group, const float *h, double still_loss, double *seen, double *said,
-                              adcgs_error *error)
+                                  adcgs_error *error)
 {
     adcgs_param *p = &t->f->param[group];
     const size_t rows = (size_t)adcgs_fmodel_rows(t->f, group);

@@ -8,11 +8,20 @@
 void adcgs_decisions_list(const adcgs_decisions *d, adcgs_decision list[ADCGS_DECISIONS])
 {
     const adcgs_decision all[] = {
-        { "details", d->details },       { "allowed", d->allowed },       { "points", (double)d->points },
-        { "began", d->began },           { "most", d->most },
-        { "refused", d->refused },       { "idle", d->idle },             { "unseen", d->unseen },
-        { "faint", d->faint },           { "unchanging", d->unchanging }, { "unmoved", d->unmoved },
-        { "units", d->units },           { "still", d->loss_still },      { "moving", d->loss_moving },
+        {"details", d->details},
+        {"allowed", d->allowed},
+        {"points", (double)d->points},
+        {"began", d->began},
+        {"most", d->most},
+        {"refused", d->refused},
+        {"idle", d->idle},
+        {"unseen", d->unseen},
+        {"faint", d->faint},
+        {"unchanging", d->unchanging},
+        {"unmoved", d->unmoved},
+        {"units", d->units},
+        {"still", d->loss_still},
+        {"moving", d->loss_moving},
     };
     _Static_assert(sizeof all == ADCGS_DECISIONS * sizeof *all, "each decision has its name");
     memcpy(list, all, sizeof all);

@@ -10,17 +10,17 @@
 #include <stdint.h>
 
 typedef struct adcgs_decisions {
-    uint64_t points;     /**< initial points, from the scene or from matching */
-    uint32_t details;    /**< details per image, if they set max_anchors */
-    uint32_t allowed;    /**< max_anchors */
-    uint32_t began;      /**< initial number of anchors */
-    uint32_t most;       /**< maximum number of anchors at any time */
-    uint32_t refused;    /**< primitives that could not grow at the last densification, because of max_anchors */
-    uint32_t idle;       /**< anchors pruned because they were hardly visible */
-    uint32_t unseen, faint; /**< primitives dropped by adcgs_prune_and_fix() */
-    uint32_t unchanging; /**< anchors made static because the images do not change where they are rendered */
-    uint32_t unmoved;    /**< anchors made static because their change is not visible */
-    uint32_t units;      /**< hidden units of networks that were pruned */
+    uint64_t points;                /**< initial points, from the scene or from matching */
+    uint32_t details;               /**< details per image, if they set max_anchors */
+    uint32_t allowed;               /**< max_anchors */
+    uint32_t began;                 /**< initial number of anchors */
+    uint32_t most;                  /**< maximum number of anchors at any time */
+    uint32_t refused;               /**< primitives that could not grow at the last densification, because of max_anchors */
+    uint32_t idle;                  /**< anchors pruned because they were hardly visible */
+    uint32_t unseen, faint;         /**< primitives dropped by adcgs_prune_and_fix() */
+    uint32_t unchanging;            /**< anchors made static because the images do not change where they are rendered */
+    uint32_t unmoved;               /**< anchors made static because their change is not visible */
+    uint32_t units;                 /**< hidden units of networks that were pruned */
     double loss_still, loss_moving; /**< training loss without and with motion, when compared; 0: not compared */
 } adcgs_decisions;
 

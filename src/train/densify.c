@@ -24,7 +24,7 @@ typedef struct cells {
 /** Inserts a cell; returns 0 if the set contains it. */
 static int cells_add(cells *c, const uint32_t pos[3])
 {
-    const uint32_t cell[3] = { pos[0] >> 2, pos[1] >> 2, pos[2] >> 2 };
+    const uint32_t cell[3] = {pos[0] >> 2, pos[1] >> 2, pos[2] >> 2};
     const uint64_t key = adcgs_morton(cell) + 1;
     size_t at = (size_t)((key * 0x9e3779b97f4a7c15u) >> 20) & c->mask;
     while (c->key[at]) {
@@ -49,7 +49,7 @@ static uint32_t find_candidates(const adcgs_trainer *t, adcgs_ranked *list)
             continue;
         const float score = t->stats.significance[i] / w;
         if (score > t->config.densify_threshold)
-            list[n++] = (adcgs_ranked){ score, i };
+            list[n++] = (adcgs_ranked){score, i};
     }
     adcgs_rank(list, n);
     return n;
@@ -76,7 +76,7 @@ static void add_anchors(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, 
     for (; i < n && s->n < budget; i++) {
         const uint32_t slot = list[i].index;
         uint32_t pos[3];
-        if (cell_of(t->f, (const float[]){ mean[0][slot], mean[1][slot], mean[2][slot] }, pos) && cells_add(occupied, pos))
+        if (cell_of(t->f, (const float[]){mean[0][slot], mean[1][slot], mean[2][slot]}, pos) && cells_add(occupied, pos))
             adcgs_anchor_set_add(s, pos, adcgs_anchor_of(t->f, slot), 1);
     }
     t->decisions.refused = n - i;
@@ -85,7 +85,7 @@ static void add_anchors(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, 
 /* ---- Growth from residuals ---- */
 
 enum {
-    MISSING_MOST = 512, /* maximum number of positions from residuals */
+    MISSING_MOST = 512,       /* maximum number of positions from residuals */
     TEMPORAL_POINTS_MAX = 256 /* maximum number of matched points */
 };
 
@@ -179,7 +179,7 @@ static uint32_t add_temporal_anchors(adcgs_trainer *t, adcgs_anchor_set *s, uint
 static void init_temporal_anchors(adcgs_trainer *t, const adcgs_stereo_point *const *points, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++) {
-        adcgs_residual place = { .size = 4 * points[i]->size };
+        adcgs_residual place = {.size = 4 * points[i]->size};
         rest(t, points[i], place.x);
         const uint32_t at = anchor_at(t->f, place.x);
         memcpy(place.rgb, points[i]->rgb, sizeof place.rgb);
@@ -203,8 +203,8 @@ double adcgs_densify_budget(const adcgs_train_config *c, double progress)
 typedef struct workspace {
     adcgs_anchor_set next;
     cells occupied;
-    adcgs_ranked *list;        /* [slots] */
-    adcgs_residual *missing; /* [MISSING_MOST] */
+    adcgs_ranked *list;                  /* [slots] */
+    adcgs_residual *missing;             /* [MISSING_MOST] */
     const adcgs_stereo_point **temporal; /* [TEMPORAL_POINTS_MAX] points of frames with large errors */
 } workspace;
 
@@ -224,7 +224,7 @@ static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_
     while (buckets < 4 * anchors)
         buckets *= 2;
     ADCGS_TRY(adcgs_anchor_set_init(&w->next, (uint32_t)anchors + 1, error));
-    w->occupied = (cells){ adcgs_alloc(NULL, buckets, sizeof *w->occupied.key, error), buckets - 1 };
+    w->occupied = (cells){adcgs_alloc(NULL, buckets, sizeof *w->occupied.key, error), buckets - 1};
     w->list = adcgs_alloc(NULL, t->pass->primitives.n, sizeof *w->list, error);
     w->missing = adcgs_alloc(NULL, MISSING_MOST, sizeof *w->missing, error);
     w->temporal = adcgs_alloc(NULL, TEMPORAL_POINTS_MAX, sizeof *w->temporal, error);
@@ -272,7 +272,7 @@ adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error
                                           n_temporal, &w.occupied);
         n_missing = sow(t, &w.next, budget, w.missing, n_missing, &w.occupied);
         adcgs_drop_floaters(t);
-        adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE }); /* canonical positions */
+        adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_NONE}); /* canonical positions */
         add_anchors(t, &w.next, budget, w.list, find_candidates(t, w.list), &w.occupied);
         t->decisions.most = ADCGS_MAX(t->decisions.most, w.next.n);
         status = adcgs_anchor_set_adopt(t, &w.next, error);

@@ -37,7 +37,7 @@ adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *vi
     if (!e->cameras)
         return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < n; i++)
-        e->cameras[i] = (adcgs_exposure_camera){ .gain = { 1, 1, 1 } };
+        e->cameras[i] = (adcgs_exposure_camera){.gain = {1, 1, 1}};
     e->n = n;
     e->patient = n > most;
     e->limit = logf(GAIN_MOST);
@@ -48,7 +48,7 @@ void adcgs_exposure_clear(adcgs_exposure *e)
 {
     adcgs_free(NULL, e->of);
     adcgs_free(NULL, e->cameras);
-    *e = (adcgs_exposure){ .n = 0 };
+    *e = (adcgs_exposure){.n = 0};
 }
 
 void adcgs_exposure_sum(const adcgs_exposure *e, uint32_t view, const float *drawn, const float *taken, size_t plane,
@@ -133,8 +133,8 @@ static int is_backdrop(const float *target, size_t plane, const float backdrop[3
 void adcgs_exposure_allow_burnt(const adcgs_exposure *e, uint32_t view, const float *drawn, const float background[3],
                                 float *target, size_t plane)
 {
-    const float full[3] = { ADCGS_BURNT, ADCGS_BURNT, ADCGS_BURNT };
-    float burnt[3], backdrop[3] = { 0, 0, 0 };
+    const float full[3] = {ADCGS_BURNT, ADCGS_BURNT, ADCGS_BURNT};
+    float burnt[3], backdrop[3] = {0, 0, 0};
     adcgs_exposure_even(e, view, full, burnt, 1);
     if (background)
         adcgs_exposure_even(e, view, background, backdrop, 1);

@@ -27,7 +27,7 @@ adcgs_status adcgs_freeze(adcgs_trainer *t, adcgs_error *error)
         memcpy(p->m, p->p, p->n * sizeof *p->m);
         curvature[i] = p->v;
     }
-    const adcgs_quantise_options nearest = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor, .value = value };
+    const adcgs_quantise_options nearest = {.cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor, .value = value};
     ADCGS_TRY(t->quantise(t->f, &nearest, error));
     adcgs_level_densities(t);
     if (t->config.rdo_strength > 0 || t->config.target != ADCGS_TARGET_NONE)

@@ -84,7 +84,7 @@ static adcgs_status make_anchors(adcgs_fmodel **out, const adcgs_start_points *c
                                  float half_life, adcgs_error *error)
 {
     const double half = cube_half(c);
-    const float origin[3] = { (float)-half, (float)-half, (float)-half };
+    const float origin[3] = {(float)-half, (float)-half, (float)-half};
     const float voxel = (float)(2 * half / (double)(1u << config->shape.depth));
     uint32_t(*pos)[3] = adcgs_alloc(NULL, c->n, sizeof *pos, error);
     uint32_t *order = adcgs_alloc(NULL, c->n, sizeof *order, error);

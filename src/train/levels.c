@@ -6,7 +6,7 @@ adcgs_status adcgs_level_costs(const adcgs_trainer *t, double strength, adcgs_rd
 {
     if (!t->frozen)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "levels are chosen by rate and distortion only after values are frozen");
-    *rdo = (adcgs_rdo){ .lambda_bit = t->config.without_rate ? 0 : strength * adcgs_cost_of_bit(t) };
+    *rdo = (adcgs_rdo){.lambda_bit = t->config.without_rate ? 0 : strength * adcgs_cost_of_bit(t)};
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
         rdo->target[i] = t->f->param[i].m;
         /* No image depends on eta. It only serves to code f_v and has no distortion of its own. */
@@ -22,8 +22,11 @@ adcgs_status adcgs_level_choose(adcgs_trainer *t, double strength, adcgs_error *
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         value[i] = t->f->param[i].p;
     ADCGS_TRY(adcgs_level_costs(t, strength, &rdo, error));
-    const adcgs_quantise_options options = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor, .value = value,
-                                             .rdo = &rdo };
+    const adcgs_quantise_options options = {.cpu = t->cpu,
+                                            .mu = t->pass->mu,
+                                            .factor = t->pass->factor,
+                                            .value = value,
+                                            .rdo = &rdo};
     return t->quantise(t->f, &options, error);
 }
 

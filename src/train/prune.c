@@ -10,11 +10,10 @@ adcgs_status adcgs_prune_anchors(adcgs_trainer *t, uint32_t keep, adcgs_error *e
     adcgs_anchor_set s;
     adcgs_ranked *ranks = adcgs_alloc(NULL, f->n, sizeof *ranks, error);
     uint8_t *kept = adcgs_alloc(NULL, f->n, 1, error);
-    adcgs_status status = ranks && kept ? adcgs_anchor_set_init(&s, f->n, error)
-                                       : adcgs_alloc_status(error);
+    adcgs_status status = ranks && kept ? adcgs_anchor_set_init(&s, f->n, error) : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         for (uint32_t i = 0; i < f->n; i++) {
-            ranks[i] = (adcgs_ranked){ 0, i };
+            ranks[i] = (adcgs_ranked){0, i};
             for (int j = 0; j < f->params.k; j++)
                 ranks[i].score += t->stats.weight[adcgs_fmodel_slot(f, i, j)];
         }

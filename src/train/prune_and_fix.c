@@ -49,10 +49,10 @@ static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error 
     const float usual = usual_opacity(t);
     /* Scene units per pixel of the full resolution at unit distance. */
     const float pixel = (float)t->config.scale / (t->views[0].view.fx * (float)t->divide);
-    adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE });
+    adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_NONE});
     memcpy(still, t->pass->prim, slots * ADCGS_ROWS * sizeof *still);
     for (int step = 0; step < DECIDE_TIMES; step++) {
-        adcgs_pass_forward(t->pass, f, (float)step / (DECIDE_TIMES - 1), &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+        adcgs_pass_forward(t->pass, f, (float)step / (DECIDE_TIMES - 1), &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
         for (size_t i = 0; i < slots; i++) {
             const uint32_t anchor = adcgs_anchor_of(f, (uint32_t)i);
             if (anchor >= f->n || f->keep[i] == 0)
@@ -98,7 +98,7 @@ adcgs_status adcgs_test_motion_gain(adcgs_trainer *t, adcgs_error *error)
 static void clear_time_table(adcgs_fmodel *f)
 {
     adcgs_param *z = &f->param[ADCGS_P_TIME];
-    float *const values[] = { z->p, z->m, z->v };
+    float *const values[] = {z->p, z->m, z->v};
     for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)
         memset(values[i], 0, z->n * sizeof(float));
 }
@@ -169,7 +169,7 @@ static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
             f->keep[i] = 0;
             t->decisions.unseen++;
         } else if (opacity < t->config.min_mean_opacity * there)
-            faint[n++] = (adcgs_ranked){ -opacity / there, (uint32_t)i };
+            faint[n++] = (adcgs_ranked){-opacity / there, (uint32_t)i};
     }
     adcgs_rank(faint, n);
     for (size_t i = 0; i < n; i++) {

@@ -11,9 +11,9 @@
 #include <math.h>
 
 enum {
-    STEP_EVERY = 10,    /* iterations between updates of lambda */
-    SAMPLE_VIEWS = 24,  /* training views of a PSNR measurement */
-    LAMBDA_REACH = 100  /* maximum factor between lambda and its initial value, in both directions */
+    STEP_EVERY = 10,   /* iterations between updates of lambda */
+    SAMPLE_VIEWS = 24, /* training views of a PSNR measurement */
+    LAMBDA_REACH = 100 /* maximum factor between lambda and its initial value, in both directions */
 };
 #define MEASURE_EVERY 0.03     /* fraction of the run between measurements */
 #define SIZE_LEAD 1.03         /* size aimed at before the freeze / target size; RDOQ saves the rest at less loss than lambda */

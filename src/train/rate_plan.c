@@ -5,9 +5,9 @@
 #include <math.h>
 
 enum {
-    OTHER_BYTES = 1700,  /* upper estimate for headers, cameras and metadata */
-    ANCHOR_BITS = 220,   /* per anchor at a small lambda; a large size allows more anchors than a preset by it */
-    FEWEST_BITS = 50,    /* per anchor at a large lambda; a small size allows fewer anchors than a preset by it */
+    OTHER_BYTES = 1700, /* upper estimate for headers, cameras and metadata */
+    ANCHOR_BITS = 220,  /* per anchor at a small lambda; a large size allows more anchors than a preset by it */
+    FEWEST_BITS = 50,   /* per anchor at a large lambda; a small size allows fewer anchors than a preset by it */
     ANCHORS_LEAST = 16,
     WIDTH_LEAST = 8
 };
@@ -43,7 +43,7 @@ static adcgs_status plan_networks(adcgs_train_config *c, double *bytes, adcgs_er
 {
     const double share = NETWORKS_SHARE * c->target_value;
     const double room = c->own_anchors ? c->target_value - OTHER_BYTES - (double)c->max_anchors * ANCHOR_BITS / 8 : 0;
-    static const double factors[] = { 1, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125 };
+    static const double factors[] = {1, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125};
     const adcgs_shape wide = c->shape;
     for (size_t i = 0; i < ADCGS_COUNTOF(factors); i++) {
         size_t weights;

@@ -7,17 +7,17 @@
 
 #include <math.h>
 
-#define LOOK_AFTER 0.06    /* fraction of the run from prune_at to the first measurement of bytes */
-#define VERDICT_AFTER 0.1  /* fraction of the run from prune_at to the second measurement */
+#define LOOK_AFTER 0.06   /* fraction of the run from prune_at to the first measurement of bytes */
+#define VERDICT_AFTER 0.1 /* fraction of the run from prune_at to the second measurement */
 /** Predicted further change of the bytes, relative to the change between the measurements, which grows with lambda. */
 #define FALL_AHEAD 1.0
-#define NEAR 0.08          /* |log of bytes over room| up to which the controller can take over */
-#define LEAP 4.0           /* maximum |log of the factor| from one try's lambda to the next */
-#define POWER 0.3          /* bytes vary with about this power of lambda; later tries use the power of the last two */
-#define POWER_LEAST 0.1    /* minimum of the power from two tries */
-#define POWER_MOST 0.6     /* maximum of the power from two tries */
-#define MISSED_POWER 1.0   /* approximate dB lost when lambda grows by a factor of e */
-#define MISSED_DOUBT 0.1   /* dB added to a shortfall at the end */
+#define NEAR 0.08        /* |log of bytes over room| up to which the controller can take over */
+#define LEAP 4.0         /* maximum |log of the factor| from one try's lambda to the next */
+#define POWER 0.3        /* bytes vary with about this power of lambda; later tries use the power of the last two */
+#define POWER_LEAST 0.1  /* minimum of the power from two tries */
+#define POWER_MOST 0.6   /* maximum of the power from two tries */
+#define MISSED_POWER 1.0 /* approximate dB lost when lambda grows by a factor of e */
+#define MISSED_DOUBT 0.1 /* dB added to a shortfall at the end */
 enum { TRIES = 4 };
 
 static double verdict_at(const adcgs_train_config *c)

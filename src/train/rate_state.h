@@ -19,10 +19,10 @@ typedef struct adcgs_rate_control {
     double fixed;    /**< bytes except the features */
     double ratio;    /**< written over estimated bytes of the features */
     double psnr;     /**< predicted dB of the training views */
-    double tried, off; /**< lambda of the last try, and its error as above */
-    double early;    /**< error of the current try at its first measurement */
+    double tried, off;      /**< lambda of the last try, and its error as above */
+    double early;           /**< error of the current try at its first measurement */
     uint32_t tries, looked; /**< finished tries; 1: the current try had its first measurement */
-    uint64_t missed; /**< 1: the run missed a quality at the end and was restarted; 64 bits avoid padding */
+    uint64_t missed;        /**< 1: the run missed a quality at the end and was restarted; 64 bits avoid padding */
 } adcgs_rate_control;
 
 #endif

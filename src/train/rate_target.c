@@ -18,13 +18,13 @@ enum {
 #define STRENGTH_FIRST 1.0
 #define STRENGTH_MOST_SIZE 64.0 /* beyond it, RDOQ discards far more than it saves, and pruning anchors is better */
 #define STRENGTH_MOST_PSNR 1e6
-#define PRUNE_LEAST 0.5         /* minimum share of the anchors that one pruning keeps */
-#define PRUNE_MOST 0.98         /* maximum share of the anchors that one pruning keeps */
-#define SIZE_MARGIN 0.01        /* share of the size left free at the freeze; networks are still trained and may grow */
-#define PSNR_GAIN 0.1           /* dB: approximate gain of the networks after the freeze */
-#define PSNR_NEAR 0.03          /* dB: tolerance of the target */
-#define STEPS_REACH 1.4         /* maximum |log of the factor| by which steps become finer */
-#define STEPS_FIRST 0.2         /* the first one tried */
+#define PRUNE_LEAST 0.5  /* minimum share of the anchors that one pruning keeps */
+#define PRUNE_MOST 0.98  /* maximum share of the anchors that one pruning keeps */
+#define SIZE_MARGIN 0.01 /* share of the size left free at the freeze; networks are still trained and may grow */
+#define PSNR_GAIN 0.1    /* dB: approximate gain of the networks after the freeze */
+#define PSNR_NEAR 0.03   /* dB: tolerance of the target */
+#define STEPS_REACH 1.4  /* maximum |log of the factor| by which steps become finer */
+#define STEPS_FIRST 0.2  /* the first one tried */
 enum { STEPS_TRIES = 8 };
 
 /** The accepted range of values [low, high]. A higher strength gives lower values, of bytes and of dB. */
@@ -139,7 +139,7 @@ adcgs_status adcgs_rate_target_frozen(adcgs_trainer *t, adcgs_error *error)
 {
     const double target = t->config.target_value;
     if (t->config.target == ADCGS_TARGET_SIZE)
-        return land(t, &(window){ (1 - 2 * SIZE_MARGIN) * target, (1 - SIZE_MARGIN) * target }, error);
+        return land(t, &(window){(1 - 2 * SIZE_MARGIN) * target, (1 - SIZE_MARGIN) * target}, error);
     if (t->config.target == ADCGS_TARGET_NONE)
         return ADCGS_OK;
     ADCGS_TRY(adcgs_trainer_load_views(t, 1, error));
@@ -152,18 +152,18 @@ adcgs_status adcgs_rate_target_frozen(adcgs_trainer *t, adcgs_error *error)
         if (t->iteration != at)
             return ADCGS_OK;
     }
-    return land(t, &(window){ aim - PSNR_NEAR, aim + PSNR_NEAR }, error);
+    return land(t, &(window){aim - PSNR_NEAR, aim + PSNR_NEAR}, error);
 }
 
 adcgs_status adcgs_rate_target_finish(adcgs_trainer *t, adcgs_error *error)
 {
     const double target = t->config.target_value;
-    window w = { (1 - 2 * SIZE_MARGIN) * target, target };
+    window w = {(1 - 2 * SIZE_MARGIN) * target, target};
     double now;
     if (t->config.target == ADCGS_TARGET_NONE)
         return ADCGS_OK;
     if (t->config.target == ADCGS_TARGET_PSNR) {
-        w = (window){ target - PSNR_NEAR, target + PSNR_NEAR };
+        w = (window){target - PSNR_NEAR, target + PSNR_NEAR};
         if (t->divide != 1)
             ADCGS_TRY(adcgs_trainer_load_views(t, 1, error));
     }

@@ -77,7 +77,8 @@ static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error 
     memcpy(l->taken, target, 3 * plane * sizeof *l->taken);
     for (size_t i = 0; i < plane; i++)
         l->off[i] = ((l->taken[i] + l->taken[plane + i] + l->taken[2 * plane + i]) -
-                     (t->image[i] + t->image[plane + i] + t->image[2 * plane + i])) / 3;
+                     (t->image[i] + t->image[plane + i] + t->image[2 * plane + i])) /
+                    3;
     spread(l);
     return ADCGS_OK;
 }
@@ -86,9 +87,9 @@ static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error 
 typedef struct rays {
     uint32_t n;
     pixel pixel[PIXELS_MOST];
-    float agreed[PIXELS_MOST][DEPTHS]; /* sum of the other cameras' residuals; 0: less than 3/4 of those that see it agree */
-    uint8_t alone[PIXELS_MOST][DEPTHS];  /* 1: only one other camera sees the point */
-    uint8_t about[PIXELS_MOST][DEPTHS];  /* 1: the cameras agree near this depth */
+    float agreed[PIXELS_MOST][DEPTHS];  /* sum of the other cameras' residuals; 0: less than 3/4 of those that see it agree */
+    uint8_t alone[PIXELS_MOST][DEPTHS]; /* 1: only one other camera sees the point */
+    uint8_t about[PIXELS_MOST][DEPTHS]; /* 1: the cameras agree near this depth */
 } rays;
 
 static float depth_of(int step)
@@ -100,8 +101,8 @@ static float depth_of(int step)
 static void lift(const look *l, int at, float d, float x[3])
 {
     const adcgs_view *v = &l->view->view;
-    const float ray[2] = { ((float)(at % l->w) + 0.5f - v->cx) / v->fx, ((float)(at / l->w) + 0.5f - v->cy) / v->fy };
-    const float c[3] = { ray[0] * d - v->translation[0], ray[1] * d - v->translation[1], d - v->translation[2] };
+    const float ray[2] = {((float)(at % l->w) + 0.5f - v->cx) / v->fx, ((float)(at / l->w) + 0.5f - v->cy) / v->fy};
+    const float c[3] = {ray[0] * d - v->translation[0], ray[1] * d - v->translation[1], d - v->translation[2]};
     for (int a = 0; a < 3; a++)
         x[a] = v->rotation[a] * c[0] + v->rotation[3 + a] * c[1] + v->rotation[6 + a] * c[2];
 }
@@ -178,7 +179,7 @@ static adcgs_status pick(rays *r, const look *l, adcgs_error *error)
         return adcgs_alloc_status(error);
     for (int i = 0; i < l->w * l->h; i++)
         if (l->more[i] > DIFFERENCE && l->off[i] == l->more[i])
-            list[count++] = (pixel){ l->more[i], i };
+            list[count++] = (pixel){l->more[i], i};
     qsort(list, count, sizeof *list, by_difference);
     r->n = ADCGS_MIN(count, PIXELS_MOST);
     memcpy(r->pixel, list, r->n * sizeof *list);
@@ -224,7 +225,7 @@ static int is_taken(uint32_t index, uint32_t views, uint32_t turn)
 
 adcgs_status adcgs_residual_find(adcgs_trainer *t, adcgs_residual *places, uint32_t most, uint32_t *n, adcgs_error *error)
 {
-    look looks[VIEWS_MOST] = { { NULL, 0, 0, NULL, NULL, NULL } };
+    look looks[VIEWS_MOST] = {{NULL, 0, 0, NULL, NULL, NULL}};
     const float when = t->views[t->curriculum.views[t->iteration % t->curriculum.n].index].t;
     int count = 0;
     adcgs_status status = ADCGS_OK;
@@ -232,7 +233,7 @@ adcgs_status adcgs_residual_find(adcgs_trainer *t, adcgs_residual *places, uint3
     *n = 0;
     if (!r)
         return adcgs_alloc_status(error);
-    adcgs_pass_forward(t->pass, t->f, when, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_COARSE });
+    adcgs_pass_forward(t->pass, t->f, when, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_COARSE});
     uint32_t there = 0, seen = 0;
     for (uint32_t i = 0; i < t->n_views; i++)
         there += t->views[i].t == when;

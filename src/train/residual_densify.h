@@ -13,10 +13,10 @@
 #include "train/state.h"
 
 typedef struct adcgs_residual {
-    float x[3];   /**< scene units */
+    float x[3]; /**< scene units */
     float rgb[3];
-    float size;   /**< of a pixel there, scene units */
-    float score;  /**< residual, summed over the cameras that agree */
+    float size;  /**< of a pixel there, scene units */
+    float score; /**< residual, summed over the cameras that agree */
 } adcgs_residual;
 
 /**

@@ -39,7 +39,7 @@ static adcgs_status sample_loss(adcgs_trainer *t, uint32_t most, int own_time, i
         const uint32_t picked = (uint32_t)((uint64_t)i * t->n_views / n);
         double one;
         adcgs_pass_forward(t->pass, t->f, own_time ? t->views[picked].t : 0.5f,
-                           &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL, .other_time = i > 0 });
+                           &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL, .other_time = i > 0});
         ADCGS_TRY(view_loss(t, picked, quarters ? (int)(i % 4) : -1, &one, error));
         *loss += one / n;
     }
@@ -103,9 +103,11 @@ static adcgs_status full_psnr(adcgs_trainer *t, uint32_t index, double *psnr, ad
 adcgs_status adcgs_sample_psnr(adcgs_trainer *t, uint32_t most, double *psnr, adcgs_error *error)
 {
     const uint32_t n = ADCGS_MIN(t->n_views, most);
-    const adcgs_pass_mode mode = { .quant = t->frozen ? ADCGS_QUANT_NONE : t->rounding ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NOISE,
-                                   .deform = 1,
-                                   .seed = (uint32_t)adcgs_random64(t->config.seed, 3001, 0) };
+    const adcgs_pass_mode mode = {.quant = t->frozen     ? ADCGS_QUANT_NONE
+                                           : t->rounding ? ADCGS_QUANT_ROUND
+                                                         : ADCGS_QUANT_NOISE,
+                                  .deform = 1,
+                                  .seed = (uint32_t)adcgs_random64(t->config.seed, 3001, 0)};
     *psnr = 0;
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t index = (uint32_t)((uint64_t)i * t->n_views / n);

@@ -29,9 +29,9 @@ static const double SAME_WAY = 0.3;
 
 /** Median depth along the axis of the points that each camera sees. */
 typedef struct gaze {
-    uint32_t n;                    /**< cameras that see points */
+    uint32_t n; /**< cameras that see points */
     uint32_t view[CAMERAS_MOST];
-    double depth[CAMERAS_MOST];    /**< world units, > 0 */
+    double depth[CAMERAS_MOST]; /**< world units, > 0 */
 } gaze;
 
 /** Solves the symmetric 3x3 system a x = b by Cramer's rule. Returns 0 if it is singular. */
@@ -51,10 +51,10 @@ static int solve3(const double a[9], const double b[3], double x[3])
 static int nearest_to_axes(const adcgs_scene *scene, double focus[3])
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
-    double a[9] = { 0 }, b[3] = { 0 };
+    double a[9] = {0}, b[3] = {0};
     for (uint32_t v = 0; v < n; v++) {
         const double *m = scene->views[ADCGS_SPLIT_TRAIN][v].camera.cam_to_world;
-        const double d[3] = { m[2], m[6], m[10] }, c[3] = { m[3], m[7], m[11] };
+        const double d[3] = {m[2], m[6], m[10]}, c[3] = {m[3], m[7], m[11]};
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++) {
                 const double p = (i == j) - d[i] * d[j];
@@ -144,7 +144,7 @@ static void middle_of_gaze(const adcgs_scene *scene, const gaze *g, double focus
 static void before_cameras(const adcgs_scene *scene, double extent, double focus[3])
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
-    double axis[3] = { 0 }, length = 0;
+    double axis[3] = {0}, length = 0;
     for (int a = 0; a < 3; a++) {
         focus[a] = 0;
         for (uint32_t v = 0; v < n; v++) {
@@ -169,7 +169,7 @@ static adcgs_status find_scale(const adcgs_scene *scene, gaze *g, double extent,
         return adcgs_alloc_status(error);
     for (uint32_t v = 0; v < n; v++) {
         const double *m = scene->views[ADCGS_SPLIT_TRAIN][v].camera.cam_to_world;
-        const double d[3] = { m[3] - origin[0], m[7] - origin[1], m[11] - origin[2] };
+        const double d[3] = {m[3] - origin[0], m[7] - origin[1], m[11] - origin[2]};
         distance[v] = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     }
     const double usual = adcgs_median(distance, n), least = g->n ? UNIT_LEAST * adcgs_median(g->depth, g->n) : 0;

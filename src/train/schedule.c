@@ -12,27 +12,32 @@ static float times_of(const adcgs_train_config *c, int group)
     case ADCGS_P_FG:
     case ADCGS_P_SIGMA:
     case ADCGS_P_COLOUR:
-    case ADCGS_P_ETA: return c->lr_scale_anchors;
-    case ADCGS_P_THETA: return c->lr_scale_prediction;
+    case ADCGS_P_ETA:
+        return c->lr_scale_anchors;
+    case ADCGS_P_THETA:
+        return c->lr_scale_prediction;
     case ADCGS_P_OMEGA:
     case ADCGS_P_VARPI:
-    case ADCGS_P_TIME: return c->lr_scale_motion;
-    default: return c->lr_scale_entropy;
+    case ADCGS_P_TIME:
+        return c->lr_scale_motion;
+    default:
+        return c->lr_scale_entropy;
     }
 }
 
 void adcgs_train_rates(const adcgs_train_config *c, adcgs_fmodel *f)
 {
     static const float rates[ADCGS_P_COUNT][2] = {
-        [ADCGS_P_FV] = { 7.5e-3f, 7.5e-4f },    [ADCGS_P_FG] = { 1.0e-2f, 1.0e-3f },     [ADCGS_P_SIGMA] = { 7.0e-3f, 7.0e-4f },
-        [ADCGS_P_COLOUR] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_ETA] = { 1.0e-2f, 1.0e-3f },    [ADCGS_P_THETA] = { 4.0e-3f, 2.0e-4f },
-        [ADCGS_P_OMEGA] = { 1.5e-3f, 1.0e-4f },  [ADCGS_P_VARPI] = { 1.5e-3f, 1.0e-4f },  [ADCGS_P_TIME] = { 5.0e-3f, 3.0e-4f },
-        [ADCGS_P_STEP] = { 5.0e-3f, 1.0e-3f },
-        [ADCGS_P_ETA_PRIOR] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_FV] = { 5.0e-3f, 5.0e-4f },
-        [ADCGS_P_E_SIGMA] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_COLOUR] = { 5.0e-3f, 5.0e-4f },
-        [ADCGS_P_E_FG] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_FG + 1] = { 5.0e-3f, 5.0e-4f },
-        [ADCGS_P_E_FG + 2] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_FG + 3] = { 5.0e-3f, 5.0e-4f },
-        [ADCGS_P_E_STEPS] = { 5.0e-3f, 5.0e-4f },
+        [ADCGS_P_FV] = {7.5e-3f, 7.5e-4f},        [ADCGS_P_FG] = {1.0e-2f, 1.0e-3f},
+        [ADCGS_P_SIGMA] = {7.0e-3f, 7.0e-4f},     [ADCGS_P_COLOUR] = {5.0e-3f, 5.0e-4f},
+        [ADCGS_P_ETA] = {1.0e-2f, 1.0e-3f},       [ADCGS_P_THETA] = {4.0e-3f, 2.0e-4f},
+        [ADCGS_P_OMEGA] = {1.5e-3f, 1.0e-4f},     [ADCGS_P_VARPI] = {1.5e-3f, 1.0e-4f},
+        [ADCGS_P_TIME] = {5.0e-3f, 3.0e-4f},      [ADCGS_P_STEP] = {5.0e-3f, 1.0e-3f},
+        [ADCGS_P_ETA_PRIOR] = {5.0e-3f, 5.0e-4f}, [ADCGS_P_E_FV] = {5.0e-3f, 5.0e-4f},
+        [ADCGS_P_E_SIGMA] = {5.0e-3f, 5.0e-4f},   [ADCGS_P_E_COLOUR] = {5.0e-3f, 5.0e-4f},
+        [ADCGS_P_E_FG] = {5.0e-3f, 5.0e-4f},      [ADCGS_P_E_FG + 1] = {5.0e-3f, 5.0e-4f},
+        [ADCGS_P_E_FG + 2] = {5.0e-3f, 5.0e-4f},  [ADCGS_P_E_FG + 3] = {5.0e-3f, 5.0e-4f},
+        [ADCGS_P_E_STEPS] = {5.0e-3f, 5.0e-4f},
     };
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
         f->param[i].lr0 = times_of(c, i) * rates[i][0];

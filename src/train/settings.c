@@ -54,12 +54,18 @@ double adcgs_setting_get(const adcgs_setting *s, const adcgs_train_config *c)
 {
     const void *at = (const char *)c + s->offset;
     switch (s->kind) {
-    case ADCGS_SETTING_REAL: return (double)*(const float *)at;
-    case ADCGS_SETTING_INT: return *(const int *)at;
-    case ADCGS_SETTING_UINT32: return *(const uint32_t *)at;
-    case ADCGS_SETTING_UINT64: return (double)*(const uint64_t *)at;
-    case ADCGS_SETTING_UINT16: return *(const uint16_t *)at;
-    default: return *(const uint8_t *)at;
+    case ADCGS_SETTING_REAL:
+        return (double)*(const float *)at;
+    case ADCGS_SETTING_INT:
+        return *(const int *)at;
+    case ADCGS_SETTING_UINT32:
+        return *(const uint32_t *)at;
+    case ADCGS_SETTING_UINT64:
+        return (double)*(const uint64_t *)at;
+    case ADCGS_SETTING_UINT16:
+        return *(const uint16_t *)at;
+    default:
+        return *(const uint8_t *)at;
     }
 }
 
@@ -67,12 +73,24 @@ void adcgs_setting_put(const adcgs_setting *s, adcgs_train_config *c, double val
 {
     void *at = (char *)c + s->offset;
     switch (s->kind) {
-    case ADCGS_SETTING_REAL: *(float *)at = (float)value; break;
-    case ADCGS_SETTING_INT: *(int *)at = (int)value; break;
-    case ADCGS_SETTING_UINT32: *(uint32_t *)at = (uint32_t)value; break;
-    case ADCGS_SETTING_UINT64: *(uint64_t *)at = (uint64_t)value; break;
-    case ADCGS_SETTING_UINT16: *(uint16_t *)at = (uint16_t)value; break;
-    default: *(uint8_t *)at = (uint8_t)value; break;
+    case ADCGS_SETTING_REAL:
+        *(float *)at = (float)value;
+        break;
+    case ADCGS_SETTING_INT:
+        *(int *)at = (int)value;
+        break;
+    case ADCGS_SETTING_UINT32:
+        *(uint32_t *)at = (uint32_t)value;
+        break;
+    case ADCGS_SETTING_UINT64:
+        *(uint64_t *)at = (uint64_t)value;
+        break;
+    case ADCGS_SETTING_UINT16:
+        *(uint16_t *)at = (uint16_t)value;
+        break;
+    default:
+        *(uint8_t *)at = (uint8_t)value;
+        break;
     }
 }
 
@@ -168,8 +186,8 @@ static adcgs_status check_target(const adcgs_train_config *c, adcgs_error *error
     if (c->target == ADCGS_TARGET_NONE)
         return ADCGS_OK;
     if (!(c->target_value >= min && c->target_value <= max))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "target of %g %s: expected %g to %g", c->target_value,
-                          size ? "bytes" : "dB", min, max);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "target of %g %s: expected %g to %g", c->target_value, size ? "bytes" : "dB",
+                          min, max);
     if (c->without_rate || c->without_rounding)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "a target size or PSNR needs rate: remove --without rate and --uncompressed");
     if (c->own_lambda)
@@ -194,7 +212,7 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         i++;
     if (i == ADCGS_PRESETS)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown preset '%s': expected draft, fast, medium, slow or paper", name);
-    *config = (adcgs_train_config){ .preset = adcgs_train_presets[i] };
+    *config = (adcgs_train_config){.preset = adcgs_train_presets[i]};
     for (const adcgs_setting *s = adcgs_settings; s->name; s++)
         adcgs_setting_put(s, config, s->preset[i]);
     return ADCGS_OK;
@@ -273,7 +291,7 @@ const char *adcgs_setting_in_list(const char *list, const char *name)
 
 adcgs_status adcgs_train_changes(const adcgs_train_config *c, adcgs_buffer *text, adcgs_error *error)
 {
-    static const char *const told_apart[] = { "lambda", "iterations", "seed" };
+    static const char *const told_apart[] = {"lambda", "iterations", "seed"};
     const size_t begin = text->size;
     for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
         char value[ADCGS_SETTING_TEXT], one[100];
@@ -312,8 +330,10 @@ void adcgs_train_list(const adcgs_train_config *config, FILE *file)
         [ADCGS_SETTING_ANCHORS] = "Anchors",
         [ADCGS_SETTING_TIMES] = "Times, as fractions of the run; above 1: never",
     };
-    fprintf(file, "Settings of preset %s: name, value, effects, meaning, range.\n"
-                  "S: speed, B: bytes of the file, Q: quality, M: memory in training.\n", config->preset);
+    fprintf(file,
+            "Settings of preset %s: name, value, effects, meaning, range.\n"
+            "S: speed, B: bytes of the file, Q: quality, M: memory in training.\n",
+            config->preset);
     int group = -1;
     for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
         if (s->group == ADCGS_SETTING_SWITCHES)

@@ -14,7 +14,7 @@
 #define ADCGS_PRESETS 5
 
 typedef enum adcgs_setting_kind {
-    ADCGS_SETTING_REAL,   /**< float */
+    ADCGS_SETTING_REAL, /**< float */
     ADCGS_SETTING_INT,
     ADCGS_SETTING_UINT32,
     ADCGS_SETTING_UINT64,
@@ -41,15 +41,15 @@ typedef enum adcgs_setting_fixed { ADCGS_FIXED_ALWAYS, ADCGS_FIXED_WITH_LAMBDA, 
 
 typedef struct adcgs_setting {
     const char *name;
-    adcgs_setting_kind kind;       /**< of the field */
-    size_t offset;                 /**< of the field in the configuration */
-    size_t own;                    /**< offset of the byte that is 1 if the user set the value; 0: none */
+    adcgs_setting_kind kind; /**< of the field */
+    size_t offset;           /**< of the field in the configuration */
+    size_t own;              /**< offset of the byte that is 1 if the user set the value; 0: none */
     adcgs_setting_group group;
     adcgs_setting_fixed fixed;
     int affects;
-    double min, max;               /**< range */
-    double preset[ADCGS_PRESETS];  /**< in the order of adcgs_train_presets */
-    const char *help;              /**< one line without full stop */
+    double min, max;              /**< range */
+    double preset[ADCGS_PRESETS]; /**< in the order of adcgs_train_presets */
+    const char *help;             /**< one line without full stop */
 } adcgs_setting;
 
 /** The table, terminated by a name of NULL. */

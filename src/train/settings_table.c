@@ -13,12 +13,14 @@
 
 #include <stddef.h>
 
-const char *const adcgs_train_presets[] = { "draft", "fast", "medium", "slow", "paper", NULL };
+const char *const adcgs_train_presets[] = {"draft", "fast", "medium", "slow", "paper", NULL};
 
+/* clang-format off */
 #define KIND(field)                                                                                                \
     _Generic(((adcgs_train_config *)0)->field, float : ADCGS_SETTING_REAL, int : ADCGS_SETTING_INT,                \
              uint32_t : ADCGS_SETTING_UINT32, uint64_t : ADCGS_SETTING_UINT64, uint16_t : ADCGS_SETTING_UINT16,    \
              uint8_t : ADCGS_SETTING_UINT8)
+/* clang-format on */
 #define AT(field) offsetof(adcgs_train_config, field)
 
 #define S ADCGS_AFFECTS_SPEED
@@ -26,12 +28,14 @@ const char *const adcgs_train_presets[] = { "draft", "fast", "medium", "slow", "
 #define Q ADCGS_AFFECTS_QUALITY
 #define M ADCGS_AFFECTS_MEMORY
 #define WIDTH_MAX ADCGS_NET_WIDTH_MAX
+/* clang-format off */
 #define ALL(x) { x, x, x, x, x }
 #define BUT_PAPER(x, paper) { x, x, x, x, paper }
 
 /* A row: most settings bind a run from the start, and nothing depends on whether the user set them. */
 #define ROW(name, field, own, group, fixed, affects, min, max, ...) \
     { name, KIND(field), AT(field), own, ADCGS_SETTING_##group, ADCGS_FIXED_##fixed, affects, min, max, __VA_ARGS__ }
+/* clang-format on */
 #define RUN(name, ...) ROW(#name, name, 0, RUN, ALWAYS, __VA_ARGS__)
 #define LOSS(name, ...) ROW(#name, name, 0, LOSS, ALWAYS, __VA_ARGS__)
 #define MODEL(name, ...) ROW(#name, params.name, 0, MODEL, ALWAYS, __VA_ARGS__)
@@ -42,7 +46,7 @@ const char *const adcgs_train_presets[] = { "draft", "fast", "medium", "slow", "
 #define SWITCH(name, fixed, help) ROW(#name, name, 0, SWITCHES, fixed, 0, 0, 1, ALL(0), help)
 
 const adcgs_setting adcgs_settings[] = {
-    RUN(iterations, S | Q, 10, 1e7, { 3000, 20000, 40000, 100000, 80000 }, "iterations of the run, each one optimiser step"),
+    RUN(iterations, S | Q, 10, 1e7, {3000, 20000, 40000, 100000, 80000}, "iterations of the run, each one optimiser step"),
     RUN(batch, S | Q | M, 1, ADCGS_TREE_MOST, ALL(1), "images of an iteration, whose mean gradient gives one optimiser step"),
     RUN(seed, 0, 0, 1e15, ALL(1), "seed of every random choice"),
     RUN(lr_scale_anchors, Q, 0, 100, ALL(1), "factor of the learning rates of features, extents, colours and hyperprior"),
@@ -91,7 +95,7 @@ const adcgs_setting adcgs_settings[] = {
      * Octaves of sines: Mildenhall et al. 2020, NeRF, ECCV. */
     MODEL(k, S | B | Q | M, 1, ADCGS_K_MAX, BUT_PAPER(6, 10), "primitives per anchor"),
     MODEL(n_fv, S | B | Q | M, 1, ADCGS_NV_MAX, ALL(32), "features of an anchor (f_v)"),
-    MODEL(n_fg, S | B | Q | M, 0, ADCGS_NG_MAX, { 0, 8, 8, 8, 16 },
+    MODEL(n_fg, S | B | Q | M, 0, ADCGS_NG_MAX, {0, 8, 8, 8, 16},
           "features of each primitive (f_g), a multiple of chunks; 0: none"),
     MODEL(chunks, B | Q, 1, ADCGS_CHUNKS_MAX, ALL(4), "parts of f_g, coded one after the other: the layers of a stream"),
     MODEL(n_eta, B | Q, 0, ADCGS_ETA_MAX, ALL(4), "hyperprior values of an anchor (eta)"),
@@ -127,10 +131,10 @@ const adcgs_setting adcgs_settings[] = {
 
     /* Densification: Kerbl et al. 2023; by temporal significance: ADC-GS, section 3.5. */
     ROW("start_anchors", start_anchors, AT(own_start), ANCHORS, ALWAYS, S | Q, 1, ADCGS_ANCHORS_MAX,
-        { 600, 1000, 1000, 1000, 1000 },
+        {600, 1000, 1000, 1000, 1000},
         "initial number of anchors; by default at least 3/4 of max_anchors with points or matched images"),
     ROW("max_anchors", max_anchors, AT(own_anchors), ANCHORS, ALWAYS, S | B | Q | M, 1, ADCGS_ANCHORS_MAX,
-        { 1200, 6000, 8000, 10000, 20000 }, "maximum number of anchors; by default from detail_anchors"),
+        {1200, 6000, 8000, 10000, 20000}, "maximum number of anchors; by default from detail_anchors"),
     ANCHOR(detail_anchors, S | B | Q | M, 0, 10000, BUT_PAPER(50, 0),
            "ratio of max_anchors, unless given, to the square root of the details per image; 0: the preset's max_anchors"),
     ANCHOR(tiers, S | B | Q, 1, ADCGS_TIERS_MAX, BUT_PAPER(4, 1),
@@ -189,39 +193,39 @@ const adcgs_setting adcgs_settings[] = {
     SWITCH(without_weight_steps, WITH_ROUNDING, "rendering networks with weights of 32 bits"),
     SWITCH(without_rounding, ALWAYS, "values and weights of 32 bits to the end"),
     SWITCH(bf16, ALWAYS, "rendering networks trained in bf16"),
-    { .name = NULL },
+    {.name = NULL},
 };
 
 const adcgs_setting_former adcgs_settings_former[] = {
-    { "average_last", "average_share" },
-    { "decide_at", "prune_at" },
-    { "deform_from", "deform_start" },
-    { "densify_every", "densify_interval" },
-    { "densify_from", "densify_start" },
-    { "even_light", "exposure_step_compensation" },
-    { "fine_from", "fine_start" },
-    { "freeze_from", "freeze_start" },
-    { "half_until", "half_size_until" },
-    { "keep_opacity", "min_mean_opacity" },
-    { "learn_entropy", "lr_scale_entropy" },
-    { "learn_features", "lr_scale_anchors" },
-    { "learn_motion", "lr_scale_motion" },
-    { "learn_prediction", "lr_scale_prediction" },
-    { "noise_from", "quant_noise_start" },
-    { "quarter_until", "quarter_size_until" },
-    { "rate_from", "rate_start" },
-    { "rates_fall_from", "lr_decay_start" },
-    { "retime_doubled", "retime_duplicates" },
-    { "rigid_weight", "rigidity_weight" },
-    { "round_from", "quant_round_start" },
-    { "scale_from", "scale_reg_start" },
-    { "scale_weight", "scale_reg_weight" },
-    { "span_ends", "lifetime_trim" },
-    { "span_moments", "lifetime_frames" },
-    { "spans", "lifetimes" },
-    { "square_weight", "l2_share" },
-    { "stereo", "matching_frames" },
-    { "still_below", "static_threshold" },
-    { "tiers_from", "tiers_start" },
-    { NULL, NULL },
+    {"average_last", "average_share"},
+    {"decide_at", "prune_at"},
+    {"deform_from", "deform_start"},
+    {"densify_every", "densify_interval"},
+    {"densify_from", "densify_start"},
+    {"even_light", "exposure_step_compensation"},
+    {"fine_from", "fine_start"},
+    {"freeze_from", "freeze_start"},
+    {"half_until", "half_size_until"},
+    {"keep_opacity", "min_mean_opacity"},
+    {"learn_entropy", "lr_scale_entropy"},
+    {"learn_features", "lr_scale_anchors"},
+    {"learn_motion", "lr_scale_motion"},
+    {"learn_prediction", "lr_scale_prediction"},
+    {"noise_from", "quant_noise_start"},
+    {"quarter_until", "quarter_size_until"},
+    {"rate_from", "rate_start"},
+    {"rates_fall_from", "lr_decay_start"},
+    {"retime_doubled", "retime_duplicates"},
+    {"rigid_weight", "rigidity_weight"},
+    {"round_from", "quant_round_start"},
+    {"scale_from", "scale_reg_start"},
+    {"scale_weight", "scale_reg_weight"},
+    {"span_ends", "lifetime_trim"},
+    {"span_moments", "lifetime_frames"},
+    {"spans", "lifetimes"},
+    {"square_weight", "l2_share"},
+    {"stereo", "matching_frames"},
+    {"still_below", "static_threshold"},
+    {"tiers_from", "tiers_start"},
+    {NULL, NULL},
 };

@@ -21,7 +21,7 @@ static int parts_of(const adcgs_trainer *t, int rank, adcgs_tree_part *parts)
 {
     int n = 0;
     for (uint32_t i = adcgs_share_place(t, rank); i < adcgs_share_place(t, rank + 1); i++)
-        n = adcgs_tree_add(parts, n, (adcgs_tree_part){ i, 1, NULL }, 0);
+        n = adcgs_tree_add(parts, n, (adcgs_tree_part){i, 1, NULL}, 0);
     return n;
 }
 
@@ -30,7 +30,7 @@ static adcgs_status begin_sharing(sharing *s, adcgs_trainer *t, adcgs_error *err
     adcgs_train_batch *const b = &t->batch;
     const size_t n = (size_t)t->team->size;
     adcgs_tree_part parts[ADCGS_TREE_PARTS];
-    *s = (sharing){ .t = t, .team = t->team };
+    *s = (sharing){.t = t, .team = t->team};
     for (size_t i = 0; i <= n; i++)
         s->slice[i] = b->size * i / n;
     s->own = s->slice[t->team->rank + 1] - s->slice[t->team->rank];
@@ -54,9 +54,9 @@ static adcgs_status swap_slices(const sharing *s, const adcgs_tree_part *own, in
         if (r == s->team->rank)
             continue;
         for (int i = 0; i < n_own; i++)
-            out[n_out++] = (adcgs_ranks_part){ r, own[i].sum + s->slice[r], (s->slice[r + 1] - s->slice[r]) * sizeof *to };
+            out[n_out++] = (adcgs_ranks_part){r, own[i].sum + s->slice[r], (s->slice[r + 1] - s->slice[r]) * sizeof *to};
         for (int i = parts_of(s->t, r, parts); i > 0; i--, to += s->own)
-            in[n_in++] = (adcgs_ranks_part){ r, to, s->own * sizeof *to };
+            in[n_in++] = (adcgs_ranks_part){r, to, s->own * sizeof *to};
     }
     return s->team->swap(s->team->user, out, n_out, in, n_in, error);
 }

@@ -80,7 +80,7 @@ static void look_in(query *q, uint32_t low, uint32_t high, const uint32_t corner
     const uint64_t begin = adcgs_morton(corner);
     for (uint32_t k = 0; k < 8; k++) {
         const uint32_t end = first_from(q->code, low, high, begin + ((uint64_t)(k + 1) << 3 * half));
-        const uint32_t at[3] = { corner[0] + (k / 4 << half), corner[1] + ((k >> 1 & 1) << half), corner[2] + ((k & 1) << half) };
+        const uint32_t at[3] = {corner[0] + (k / 4 << half), corner[1] + ((k >> 1 & 1) << half), corner[2] + ((k & 1) << half)};
         look_in(q, low, end, at, half);
         low = end;
     }
@@ -102,7 +102,7 @@ static void bound(query *q, uint32_t n)
 
 adcgs_status adcgs_spacings(const uint32_t (*pos)[3], uint32_t n, double *mean, adcgs_error *error)
 {
-    static const uint32_t all[3] = { 0, 0, 0 };
+    static const uint32_t all[3] = {0, 0, 0};
     const uint32_t known = ADCGS_MIN(n - 1, NEAREST);
     uint64_t *code = adcgs_alloc(NULL, n, sizeof *code, error);
     if (!code)
@@ -110,7 +110,7 @@ adcgs_status adcgs_spacings(const uint32_t (*pos)[3], uint32_t n, double *mean, 
     for (uint32_t i = 0; i < n; i++)
         code[i] = adcgs_morton(pos[i]);
     for (uint32_t i = 0; i < n; i++) {
-        query q = { .pos = pos, .code = code, .self = i };
+        query q = {.pos = pos, .code = code, .self = i};
         double sum = 0;
         bound(&q, n);
         look_in(&q, 0, n, all, ADCGS_GEOM_DEPTH_MAX);

@@ -71,7 +71,7 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
     }
     if (!t->quantise || c->without_rounding)
         return ADCGS_OK;
-    const adcgs_quantise_options means = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor };
+    const adcgs_quantise_options means = {.cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor};
     if (!t->rounding && progress >= c->quant_round_start) {
         ADCGS_TRY(round_values(t, error));
         adcgs_level_densities(t);
@@ -133,8 +133,8 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
     const uint32_t at = t->iteration;
     ADCGS_TRY(enter_stages(t, progress, error));
     if (t->iteration == at)
-        ADCGS_TRY(adcgs_rate_is_sought(t) ? adcgs_rate_search_step(t, progress, error) :
-                                            adcgs_rate_control_step(t, progress, error));
+        ADCGS_TRY(adcgs_rate_is_sought(t) ? adcgs_rate_search_step(t, progress, error)
+                                          : adcgs_rate_control_step(t, progress, error));
     t->torn = grows; /* a run continued from this state would grow again */
     return ADCGS_OK;
 }

@@ -11,14 +11,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define START_SHARE 0.75   /* of max_anchors: known points lie on surfaces, and growth adds the rest */
-#define MATCHED_SHARE 0.9  /* of the points; the rest are random points where matching found nothing */
-#define MOVING_SHARE 0.25  /* of all points: moving ones; with many more, anchors are too small to find motion */
+#define START_SHARE 0.75          /* of max_anchors: known points lie on surfaces, and growth adds the rest */
+#define MATCHED_SHARE 0.9         /* of the points; the rest are random points where matching found nothing */
+#define MOVING_SHARE 0.25         /* of all points: moving ones; with many more, anchors are too small to find motion */
 #define SPACING_LEAST (1 / 15.0f) /* minimum frame spacing, as share of the clip; bounds the number of lifetimes in a long clip */
-#define MONOCULAR_LIFETIMES 2.7f /* factor of lifetimes for one moving camera: more views then see an anchor */
-#define FILM_FAR 0.4       /* camera distances per clip: slower motion is found without lifetimes */
-#define POINTS_LOOKED_AT 1000 /* points tested for visibility in any camera */
-#define MOVING_MOST 2000   /* maximum number per frame for lifetimes */
+#define MONOCULAR_LIFETIMES 2.7f  /* factor of lifetimes for one moving camera: more views then see an anchor */
+#define FILM_FAR 0.4              /* camera distances per clip: slower motion is found without lifetimes */
+#define POINTS_LOOKED_AT 1000     /* points tested for visibility in any camera */
+#define MOVING_MOST 2000          /* maximum number per frame for lifetimes */
 
 /* ---- Visibility ---- */
 
@@ -28,8 +28,8 @@ enum { SIGHTS = 64 };
 typedef struct sight {
     const adcgs_scene *scene;
     double origin[3], scale;
-    uint32_t n;             /* views sampled */
-    float *rgb[SIGHTS];        /* their images, reduced */
+    uint32_t n;         /* views sampled */
+    float *rgb[SIGHTS]; /* their images, reduced */
     adcgs_camera camera[SIGHTS];
 } sight;
 
@@ -65,7 +65,7 @@ typedef struct glimpse {
 
 static glimpse observe_point(const sight *s, const double x[3])
 {
-    glimpse g = { 0, 0, { 0, 0, 0 } };
+    glimpse g = {0, 0, {0, 0, 0}};
     double world[3];
     for (int a = 0; a < 3; a++)
         world[a] = s->origin[a] + s->scale * x[a];
@@ -143,7 +143,7 @@ static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
         double x[3];
         if (!given_point(x, s, from))
             continue;
-        const glimpse seen = p->coloured ? (glimpse){ 0 } : observe_point(s, x);
+        const glimpse seen = p->coloured ? (glimpse){0} : observe_point(s, x);
         for (int a = 0; a < 3; a++) {
             c->x[c->n][a] = x[a];
             c->rgb[c->n][a] = p->coloured ? p->colour[from][a] / 255.0 : seen.rgb[a];
@@ -155,7 +155,7 @@ static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
 #define NEAR_RADIUS 1.2 /* scene units: radius of the volume that the cameras surround */
 #define FAR_RADIUS 4.0  /* scene units: outer radius of the random points beyond it */
 #define FAR_SHARE 0.2   /* of the random points lie beyond the near radius */
-#define CORE_SHARE 0.5 /* of the points lie in the inner half of the near radius, where all cameras look */
+#define CORE_SHARE 0.5  /* of the points lie in the inner half of the near radius, where all cameras look */
 
 /** Uniform in a ball, or outside it with a density proportional to distance^-3, like the resolution of images. */
 static void random_place(double x[3], uint64_t seed, uint64_t i)
@@ -315,8 +315,7 @@ static adcgs_status find_points(adcgs_start_points *c, const sight *s, const adc
         return ADCGS_OK;
     random_points(c, s, found, config->start_anchors, config->seed);
     return c->n ? ADCGS_OK
-                : adcgs_fail(error, ADCGS_ERR_DATA,
-                             "%s: no volume is seen by a quarter of the training cameras: check the poses",
+                : adcgs_fail(error, ADCGS_ERR_DATA, "%s: no volume is seen by a quarter of the training cameras: check the poses",
                              s->scene->directory);
 }
 
@@ -324,7 +323,7 @@ adcgs_status adcgs_start_points_find(adcgs_start_points *c, const adcgs_scene *s
                                      const adcgs_stereo *found, adcgs_error *error)
 {
     sight s;
-    *c = (adcgs_start_points){ .n = 0 };
+    *c = (adcgs_start_points){.n = 0};
     ADCGS_TRY(sight_init(&s, scene, error));
     adcgs_status status = alloc_points(c, config->start_anchors, error);
     if (status == ADCGS_OK)
@@ -337,8 +336,8 @@ adcgs_status adcgs_start_points_find(adcgs_start_points *c, const adcgs_scene *s
 
 float adcgs_half_lifetime(const adcgs_train_config *config, const adcgs_stereo *found)
 {
-    return (found->monocular ? MONOCULAR_LIFETIMES : 1) * config->lifetime_frames * fmaxf(adcgs_stereo_spacing(found),
-                                                                                          SPACING_LEAST);
+    return (found->monocular ? MONOCULAR_LIFETIMES : 1) * config->lifetime_frames *
+           fmaxf(adcgs_stereo_spacing(found), SPACING_LEAST);
 }
 
 /** True if the median moving point moves far, in a scene of one moving camera. */
@@ -378,7 +377,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene
 {
     int matched = 0, whole = 0, far = 1;
     const int given = has_points(scene);
-    adcgs_stereo_options options = { .still = 0 };
+    adcgs_stereo_options options = {.still = 0};
     if (config->matching_frames && (!given || config->params.spans)) {
         ADCGS_TRY(adcgs_stereo_applies(scene, &matched, error));
         ADCGS_TRY(adcgs_stereo_applies(scene->whole ? scene->whole : scene, &whole, error));

@@ -14,7 +14,7 @@ enum { ADCGS_POINTS_LEAST = 16 };
 
 typedef struct adcgs_start_points {
     uint32_t n;
-    double (*x)[3];   /**< scene units */
+    double (*x)[3]; /**< scene units */
     double (*rgb)[3];
     const adcgs_stereo_point **matched; /**< result of matching for a point; NULL: from another source */
 } adcgs_start_points;

@@ -30,7 +30,7 @@ adcgs_train_stats adcgs_train_stats_at(float *numbers, const adcgs_fmodel *f)
 {
     const size_t slots = slots_of(f), anchors = (size_t)f->groups * ADCGS_LANES;
     float *const of_anchors = numbers + 3 * slots;
-    return (adcgs_train_stats){ numbers, numbers + slots, numbers + 2 * slots, of_anchors, of_anchors + anchors, 0 };
+    return (adcgs_train_stats){numbers, numbers + slots, numbers + 2 * slots, of_anchors, of_anchors + anchors, 0};
 }
 
 void adcgs_train_batch_forget(adcgs_train_batch *b)
@@ -39,7 +39,7 @@ void adcgs_train_batch_forget(adcgs_train_batch *b)
         adcgs_free(NULL, b->sum[i]);
     adcgs_free(NULL, b->means);
     adcgs_free(NULL, b->room);
-    *b = (adcgs_train_batch){ .results = b->results };
+    *b = (adcgs_train_batch){.results = b->results};
 }
 
 adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
@@ -76,8 +76,8 @@ static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
         t->curriculum.known |= (uint16_t)((t->stereo.body[b].pose != NULL) << b);
     adcgs_free(NULL, times);
     if (status == ADCGS_OK)
-        status = adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, t->scene->n_times <= 1,
-                                       error);
+        status =
+            adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, t->scene->n_times <= 1, error);
     return status;
 }
 
@@ -204,7 +204,7 @@ static adcgs_status create(adcgs_trainer **out, const adcgs_scene *scene, const 
     adcgs_buffer_init(&t->begin);
     if (matched) {
         t->stereo = *matched;
-        *matched = (adcgs_stereo){ .n_still = 0 };
+        *matched = (adcgs_stereo){.n_still = 0};
     }
     const adcgs_status status = create_parts(t, before, error);
     t->lambda = (double)t->config.lambda;

@@ -36,9 +36,9 @@ typedef struct adcgs_train_stats {
     float *weight;       /* Psi */
     float *significance; /* Psi times screen gradient */
     float *opacity;
-    float *presence;     /* of each anchor, [groups][64] */
-    float *in_view;      /* likewise, in views whose image contains one of its primitives */
-    uint32_t n;          /* number of view passes */
+    float *presence; /* of each anchor, [groups][64] */
+    float *in_view;  /* likewise, in views whose image contains one of its primitives */
+    uint32_t n;      /* number of view passes */
 } adcgs_train_stats;
 
 /** Total size of the arrays, which are consecutive. */
@@ -54,11 +54,11 @@ typedef struct adcgs_view_result {
 
 /** View passes of an iteration; see batch.h. */
 typedef struct adcgs_train_batch {
-    adcgs_view_result *results;     /* [config.batch] */
-    float *sum[ADCGS_TREE_PARTS];   /* [size] gradients and statistics, if there are several passes */
+    adcgs_view_result *results;   /* [config.batch] */
+    float *sum[ADCGS_TREE_PARTS]; /* [size] gradients and statistics, if there are several passes */
     size_t size;
-    float *means;                   /* means of the pass before the iteration */
-    float *room;                    /* receive buffer for a team */
+    float *means; /* means of the pass before the iteration */
+    float *room;  /* receive buffer for a team */
 } adcgs_train_batch;
 
 /** Frees the sums and means after a change of their size. */
@@ -83,50 +83,50 @@ typedef struct adcgs_trainer {
     adcgs_stereo stereo;
     uint32_t n_views;
     adcgs_train_view *views;
-    adcgs_image_store *pictures; /* of the training views */
-    int divide;              /* of the loaded views; 0: none */
-    uint64_t picture_memory; /* maximum bytes of them; 0: half of the machine's memory */
+    adcgs_image_store *pictures;        /* of the training views */
+    int divide;                         /* of the loaded views; 0: none */
+    uint64_t picture_memory;            /* maximum bytes of them; 0: half of the machine's memory */
     adcgs_image_store_progress loading; /* called for each loaded image, or NULL */
     void *loading_user;
     adcgs_thumbnail *thumbnails; /* [n_views] of loaded images, owned by the caller; NULL: not wanted */
-    adcgs_fault duplicates;  /* duplicated images, if they were searched */
+    adcgs_fault duplicates;      /* duplicated images, if they were searched */
     float *image, *grad;
-    float *taken;            /* recorded image of the current view */
+    float *taken; /* recorded image of the current view */
     adcgs_train_stats stats;
     adcgs_train_batch batch;
     adcgs_weight_average average;
     adcgs_train_quantise quantise; /* provided by the code that builds streams; NULL: values stay unquantised */
     adcgs_train_measure measure;   /* likewise; used if there is a target size */
     void *measure_user;
-    const adcgs_team *team;        /* runs that share the work; NULL: none */
-    int until_lambda;        /* 1: stop before the first iteration that lambda affects */
+    const adcgs_team *team; /* runs that share the work; NULL: none */
+    int until_lambda;       /* 1: stop before the first iteration that lambda affects */
     /* State in checkpoints in addition to the model. */
     uint32_t iteration;
-    uint8_t lambda_used;     /* 1: lambda has affected the run and must not change */
+    uint8_t lambda_used; /* 1: lambda has affected the run and must not change */
     uint8_t fixed_unchanging, motion_tested, units_pruned, pruned, tiered, rounding, frozen;
     uint8_t unfreeze_tests; /* number of times that anchors were tested for unfreezing */
-    uint8_t before[16]; /* digest of the previous segment's model; 0 without one */
+    uint8_t before[16];     /* digest of the previous segment's model; 0 without one */
     float lr_scale;
     double contrast; /* of the initial training images; 0: unknown */
-    double lambda; /* of the rate; the configuration's, scaled by contrast or controlled by a target */
+    double lambda;   /* of the rate; the configuration's, scaled by contrast or controlled by a target */
     adcgs_rate_control rate_control;
     uint32_t rollbacks;
-    int diverged;            /* the run ended after too many rollbacks */
+    int diverged; /* the run ended after too many rollbacks */
     double mean_loss, mean_mse;
-    double least_mse; /* minimum of mean_mse; 0 before the first iteration */
+    double least_mse;   /* minimum of mean_mse; 0 before the first iteration */
     adcgs_time elapsed; /* of all programs that took part in the run */
     double mean_bits[ADCGS_GROUPS];
     adcgs_decisions decisions;
     char trials[ADCGS_TRIALS_TEXT]; /* results of trials before the run, for the stream; "" without trials */
     /* State that is not in checkpoints. */
-    adcgs_time started;      /* start of this program's time; clock 0: when the run begins or continues */
+    adcgs_time started; /* start of this program's time; clock 0: when the run begins or continues */
     adcgs_time_left left;
-    uint8_t content[16];     /* of the training images' files; see adcgs_scene_content() */
-    int has_content;         /* 1: known; computed once, when a file needs it */
+    uint8_t content[16]; /* of the training images' files; see adcgs_scene_content() */
+    int has_content;     /* 1: known; computed once, when a file needs it */
     adcgs_buffer snapshot;
-    uint32_t snapshot_at;    /* its iteration */
-    int torn;                /* 1: the state is between two steps of a change; only the snapshot is consistent */
-    adcgs_buffer begin;      /* in checkpoints, too: state at rate_start, while the run may return; see rate_search.h */
+    uint32_t snapshot_at; /* its iteration */
+    int torn;             /* 1: the state is between two steps of a change; only the snapshot is consistent */
+    adcgs_buffer begin;   /* in checkpoints, too: state at rate_start, while the run may return; see rate_search.h */
 } adcgs_trainer;
 
 /** ADCGS_ERR_USAGE for a configuration that does not pass adcgs_train_check(). */

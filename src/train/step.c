@@ -101,7 +101,7 @@ static void update(adcgs_trainer *t, double progress)
         if (!begins(p, i))
             continue;
         const float lr = t->lr_scale * adcgs_train_rate(&t->config, p->lr0, p->lr1, progress), n = (float)++p->steps;
-        adam_job job = { t, i, lr, 1 / (1 - powf(0.9f, n)), 1 / (1 - powf(0.999f, n)) };
+        adam_job job = {t, i, lr, 1 / (1 - powf(0.9f, n)), 1 / (1 - powf(0.999f, n))};
         adcgs_pool_run(p->n > ADAM_PIECE ? t->pool : NULL, adam_piece, &job, (int)((p->n + ADAM_PIECE - 1) / ADAM_PIECE));
     }
     if (t->rounding && !t->frozen)
@@ -126,7 +126,7 @@ static int averages(const adcgs_trainer *t, double progress)
 static void note_means(adcgs_trainer *t, int rated)
 {
     const double keep = !t->iteration ? 0 : t->iteration < 100 ? 0.9 : 0.99;
-    adcgs_view_result mean = { .loss = 0 };
+    adcgs_view_result mean = {.loss = 0};
     for (uint32_t i = 0; i < t->config.batch; i++) {
         const adcgs_view_result *seen = &t->batch.results[i];
         mean.loss += seen->loss / t->config.batch;

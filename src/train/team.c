@@ -11,7 +11,7 @@ adcgs_status adcgs_team_broadcast(const adcgs_team *team, void *data, size_t byt
     if (!n)
         return ADCGS_OK;
     for (int i = 0; i < n; i++)
-        parts[i] = (adcgs_ranks_part){ team->rank ? 0 : i + 1, data, bytes };
+        parts[i] = (adcgs_ranks_part){team->rank ? 0 : i + 1, data, bytes};
     return team->rank ? team->swap(team->user, NULL, 0, parts, n, error) : team->swap(team->user, parts, n, NULL, 0, error);
 }
 
@@ -24,8 +24,8 @@ adcgs_status adcgs_team_gather(const adcgs_team *team, void *data, const size_t 
     for (int r = 0; r < team->size; r++) {
         if (r == own)
             continue;
-        out[n] = (adcgs_ranks_part){ r, bytes + at[own], at[own + 1] - at[own] };
-        in[n++] = (adcgs_ranks_part){ r, bytes + at[r], at[r + 1] - at[r] };
+        out[n] = (adcgs_ranks_part){r, bytes + at[own], at[own + 1] - at[own]};
+        in[n++] = (adcgs_ranks_part){r, bytes + at[r], at[r + 1] - at[r]};
     }
     return team->swap(team->user, out, n, in, n, error);
 }

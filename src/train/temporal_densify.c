@@ -25,7 +25,7 @@ typedef struct batch {
 
 static batch batch_of(const adcgs_stereo *s, float when)
 {
-    batch b = { .n = 0 };
+    batch b = {.n = 0};
     for (uint32_t i = 0; i < s->n_moving; i++)
         if (s->moving[i].t >= when && s->moving[i].t <= when) {
             b.point = b.n++ ? b.point : &s->moving[i];
@@ -43,7 +43,7 @@ static adcgs_status ask_view(adcgs_trainer *t, batch *b, uint32_t index, adcgs_e
     ADCGS_TRY(adcgs_trainer_target(t, index, NULL, &taken, error));
     for (uint32_t i = 0; i < b->n; i++) {
         const double *place = b->point[i].x;
-        const float x[3] = { (float)place[0], (float)place[1], (float)place[2] };
+        const float x[3] = {(float)place[0], (float)place[1], (float)place[2]};
         size_t at;
         if (!adcgs_view_pixel(v, x, &at))
             continue;
@@ -59,7 +59,7 @@ static adcgs_status ask_view(adcgs_trainer *t, batch *b, uint32_t index, adcgs_e
 static adcgs_status measure_frame(adcgs_trainer *t, batch *b, float when, adcgs_error *error)
 {
     uint32_t asked = 0;
-    adcgs_pass_forward(t->pass, t->f, when, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(t->pass, t->f, when, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     for (uint32_t i = 0; i < t->n_views && asked < VIEWS_MOST; i++)
         if (fabsf(t->views[i].t - when) < 1e-5f) {
             ADCGS_TRY(ask_view(t, b, i, error));
@@ -74,7 +74,7 @@ static uint32_t choose(const batch *b, adcgs_ranked *list, const adcgs_stereo_po
     for (uint32_t i = 0; i < b->n; i++) {
         const float gain = b->seen[i] >= VIEWS_LEAST ? b->gain[i] / (float)b->seen[i] : 0;
         if (gain > GAIN_LEAST)
-            list[n++] = (adcgs_ranked){ gain, i };
+            list[n++] = (adcgs_ranked){gain, i};
     }
     adcgs_rank(list, n);
     n = ADCGS_MIN(n, most);

@@ -18,8 +18,8 @@ enum {
     LEAST = 64,       /* minimum anchors of the first tier */
     LEARN_EVERY = 2   /* one of so many iterations also trains without the later tiers */
 };
-#define SHARE 0.4   /* of the remaining anchors: share that stays in the earlier tiers */
-#define ROUND 0.75  /* of the remaining anchors: minimum share that a round keeps */
+#define SHARE 0.4  /* of the remaining anchors: share that stays in the earlier tiers */
+#define ROUND 0.75 /* of the remaining anchors: minimum share that a round keeps */
 
 /** A view for measuring the effect of tiers, and its render with all tiers. */
 typedef struct lookout {
@@ -55,7 +55,7 @@ static void show(const adcgs_trainer *t, int tiers)
 
 static adcgs_status draw(const survey *s, const lookout *l, int tiers, float *image, int keep, adcgs_error *error)
 {
-    const adcgs_pass_mode mode = { .deform = ADCGS_DEFORM_ALL };
+    const adcgs_pass_mode mode = {.deform = ADCGS_DEFORM_ALL};
     adcgs_pass_forward(s->t->pass, s->t->f, l->t, &mode);
     show(s->t, tiers);
     return adcgs_view_render(s->t, &l->view, ADCGS_MEAN_LIGHT, image, keep, error);
@@ -90,7 +90,7 @@ static void survey_end(survey *s)
 static adcgs_status survey_begin(survey *s, adcgs_trainer *t, adcgs_error *error)
 {
     const int n = (int)ADCGS_MIN(t->n_views, (uint32_t)VIEWS);
-    *s = (survey){ .t = t };
+    *s = (survey){.t = t};
     s->change = adcgs_alloc(NULL, t->f->n, sizeof *s->change, error);
     s->worth = adcgs_alloc(NULL, t->f->n, sizeof *s->worth, error);
     s->rank = adcgs_alloc(NULL, t->f->n, sizeof *s->rank, error);
@@ -186,7 +186,7 @@ static void demote(survey *s, int tiers, uint32_t *left, uint32_t want)
     uint32_t n = 0;
     for (uint32_t a = 0; a < f->n; a++)
         if (f->tier[a] < tiers)
-            s->rank[n++] = (adcgs_ranked){ (float)s->worth[a], a };
+            s->rank[n++] = (adcgs_ranked){(float)s->worth[a], a};
     adcgs_rank(s->rank, n);
     while (*left > want)
         f->tier[s->rank[--*left].index] = (uint8_t)tiers;
@@ -242,8 +242,7 @@ adcgs_status adcgs_tiers_train(adcgs_trainer *t, uint32_t view, const adcgs_pass
 {
     const adcgs_fmodel *f = t->f;
     const uint64_t draw = adcgs_random64(t->config.seed, 3001, t->iteration);
-    if (!f->finest || f->follows || t->frozen || f->params.adaptive_steps || t->config.tier_weight <= 0 ||
-        draw % LEARN_EVERY)
+    if (!f->finest || f->follows || t->frozen || f->params.adaptive_steps || t->config.tier_weight <= 0 || draw % LEARN_EVERY)
         return ADCGS_OK;
     const int tiers = 1 + (int)(draw / LEARN_EVERY % f->finest);
     const adcgs_view *v = &t->views[view].view;

@@ -20,8 +20,7 @@ static int nearer_the_middle(const void *a, const void *b)
     return d != e ? (d > e) - (d < e) : (v->index > w->index) - (v->index < w->index);
 }
 
-adcgs_status adcgs_curriculum_create(adcgs_curriculum *w, const float *t, uint32_t n_views, int forward,
-                                     adcgs_error *error)
+adcgs_status adcgs_curriculum_create(adcgs_curriculum *w, const float *t, uint32_t n_views, int forward, adcgs_error *error)
 {
     w->views = adcgs_alloc(NULL, n_views, sizeof *w->views, error);
     if (!w->views)
@@ -30,7 +29,7 @@ adcgs_status adcgs_curriculum_create(adcgs_curriculum *w, const float *t, uint32
     w->n = 0;
     w->forward = forward;
     for (uint32_t i = 0; i < n_views; i++)
-        w->views[i] = (adcgs_curriculum_view){ t[i], i };
+        w->views[i] = (adcgs_curriculum_view){t[i], i};
     qsort(w->views, n_views, sizeof *w->views, forward ? earlier : nearer_the_middle);
     return ADCGS_OK;
 }

@@ -17,16 +17,15 @@ typedef struct adcgs_curriculum_view {
 
 typedef struct adcgs_curriculum {
     adcgs_curriculum_view *views; /* [n_views] by distance from the start of the curriculum */
-    int forward;              /* 1: from the beginning of time, not from its middle */
-    uint16_t known;           /* bit b: the poses of body b + 1 are known */
+    int forward;                  /* 1: from the beginning of time, not from its middle */
+    uint16_t known;               /* bit b: the poses of body b + 1 are known */
     uint32_t n_views;
-    uint32_t n;               /* views in training; 0: not started */
-    int32_t first, last;      /* range of time table rows in training */
+    uint32_t n;          /* views in training; 0: not started */
+    int32_t first, last; /* range of time table rows in training */
 } adcgs_curriculum;
 
 /** t: time of each view, as a fraction of the scene's duration. */
-adcgs_status adcgs_curriculum_create(adcgs_curriculum *window, const float *t, uint32_t n_views, int forward,
-                                     adcgs_error *error);
+adcgs_status adcgs_curriculum_create(adcgs_curriculum *window, const float *t, uint32_t n_views, int forward, adcgs_error *error);
 void adcgs_curriculum_clear(adcgs_curriculum *window);
 /** Extends the training to this fraction of the views. New rows of the time table are copied from their neighbours. */
 void adcgs_curriculum_grow(adcgs_curriculum *window, double fraction, adcgs_fmodel *f);

@@ -56,8 +56,8 @@ static double count_until(const adcgs_train_config *c, double fraction)
 double adcgs_time_left_of(const adcgs_time_left *left, const adcgs_train_config *c, uint32_t iteration, double elapsed)
 {
     const double quarter = count_until(c, (double)c->quarter_size_until);
-    const double ends[ADCGS_TIME_LEFT_LEVELS] = { c->iterations, fmax(count_until(c, (double)c->half_size_until), quarter),
-                                                 quarter };
+    const double ends[ADCGS_TIME_LEFT_LEVELS] = {c->iterations, fmax(count_until(c, (double)c->half_size_until), quarter),
+                                                 quarter};
     double seconds = 0, at = iteration;
     for (int level = ADCGS_TIME_LEFT_LEVELS - 1; level >= 0; level--) {
         if (ends[level] <= at)

@@ -24,67 +24,67 @@ typedef enum adcgs_train_target {
 
 typedef struct adcgs_train_config {
     const char *preset;
-    double time_limit;     /**< seconds; > 0: progress is measured in time, and the result depends on the machine */
+    double time_limit; /**< seconds; > 0: progress is measured in time, and the result depends on the machine */
     adcgs_train_target target;
-    double target_value;   /**< bytes or dB */
+    double target_value; /**< bytes or dB */
     /* Set by the user: no target changes lambda, max_anchors or the networks' widths, and no scene changes the others. */
     uint8_t own_lambda, own_start, own_anchors, own_networks, own_rigidity, own_scale_reg_start, own_l2_share, own_smooth;
-    uint32_t details;      /**< details per image of the scene, if known (adcgs_plan_details()) */
+    uint32_t details; /**< details per image of the scene, if known (adcgs_plan_details()) */
     uint8_t has_details;
-    uint8_t judges_poses;  /**< 1: report pose errors; not part of checkpoints or streams */
+    uint8_t judges_poses; /**< 1: report pose errors; not part of checkpoints or streams */
     /* The run. */
     uint32_t iterations;
-    uint32_t batch;        /**< view passes per iteration */
+    uint32_t batch; /**< view passes per iteration */
     uint64_t seed;
-    int scale;             /**< images are reduced by this integer factor before training */
+    int scale; /**< images are reduced by this integer factor before training */
     float lr_scale_anchors, lr_scale_prediction, lr_scale_motion, lr_scale_entropy; /**< learning rates over the defaults */
     /* The loss. */
-    float lambda;          /**< loss per mebibyte (2^23 bits) of estimated features and networks */
-    float network_rate;    /**< weight of the networks' bits, relative to the features' */
-    int rate_period;       /**< rate is measured on every n-th group of anchors */
-    float rdo_strength;    /**< loss per bit when values are frozen, relative to training's; 0: the nearest levels */
+    float lambda;       /**< loss per mebibyte (2^23 bits) of estimated features and networks */
+    float network_rate; /**< weight of the networks' bits, relative to the features' */
+    int rate_period;    /**< rate is measured on every n-th group of anchors */
+    float rdo_strength; /**< loss per bit when values are frozen, relative to training's; 0: the nearest levels */
     float ssim_weight, l2_share;
-    float rigidity_weight; /**< of the rigidity energy between neighbours; 0 if several views share a timestamp */
-    float scale_reg_weight; /**< of the scale penalty of primitives */
+    float rigidity_weight;   /**< of the rigidity energy between neighbours; 0 if several views share a timestamp */
+    float scale_reg_weight;  /**< of the scale penalty of primitives */
     float distortion_weight; /**< of the depth distortion along rays */
-    int distortion_period; /**< iterations between its evaluations */
-    float tier_weight;     /**< of the loss of renders without the later tiers */
-    float dropout;         /**< share of primitives dropped at random until rounding, against overfitting few views */
+    int distortion_period;   /**< iterations between its evaluations */
+    float tier_weight;       /**< of the loss of renders without the later tiers */
+    float dropout;           /**< share of primitives dropped at random until rounding, against overfitting few views */
     /* The model. */
-    adcgs_params params;   /**< time_rows is capped by the scene */
+    adcgs_params params; /**< time_rows is capped by the scene */
     adcgs_shape shape;
     /* Anchors. */
-    int tiers;             /**< maximum number of progressive anchor sets, the first a coarse scene; few anchors make fewer */
-    float detail_anchors;  /**< max_anchors / sqrt(details), unless the user set max_anchors; 0: the preset's */
+    int tiers;            /**< maximum number of progressive anchor sets, the first a coarse scene; few anchors make fewer */
+    float detail_anchors; /**< max_anchors / sqrt(details), unless the user set max_anchors; 0: the preset's */
     uint32_t start_anchors, max_anchors;
-    uint8_t lifetime_trim; /**< 1: lifetimes also end where the images show the background */
-    float lifetime_frames; /**< initial half lifetime of an anchor, in matched frames */
+    uint8_t lifetime_trim;     /**< 1: lifetimes also end where the images show the background */
+    float lifetime_frames;     /**< initial half lifetime of an anchor, in matched frames */
     uint32_t densify_interval; /**< iterations between densifications */
-    float densify_threshold; /**< of the significance-weighted screen gradient */
-    float prune_opacity;   /**< of the accumulated opacity */
-    float min_mean_opacity; /**< minimum mean opacity of primitives at prune_at */
-    float static_threshold; /**< effect of time below which an anchor is static; 1 is just visible */
+    float densify_threshold;   /**< of the significance-weighted screen gradient */
+    float prune_opacity;       /**< of the accumulated opacity */
+    float min_mean_opacity;    /**< minimum mean opacity of primitives at prune_at */
+    float static_threshold;    /**< effect of time below which an anchor is static; 1 is just visible */
     /* Times, as fractions of the run. */
     /** Share of the views, about the middle of time, that training begins with (no time); from until on it uses all views. */
     float curriculum_begin, curriculum_until;
-    float lr_decay_start; /**< start of the decay of learning rates */
+    float lr_decay_start;                      /**< start of the decay of learning rates */
     float quarter_size_until, half_size_until; /**< end of training at a quarter and at half of the resolution */
-    float scale_reg_start; /**< start of the scale penalty; 0 if several views share a timestamp */
+    float scale_reg_start;                     /**< start of the scale penalty; 0 if several views share a timestamp */
     float deform_start, fine_start, densify_start, densify_until, quant_noise_start, rate_start;
     float prune_units_at, prune_units_again; /**< pruning of hidden units; the second one needs the first */
     float prune_at, tiers_start, quant_round_start, freeze_start;
-    float average_share;   /**< share of the end of rounding, and of the run, to average; at most half of each stage */
+    float average_share; /**< share of the end of rounding, and of the run, to average; at most half of each stage */
     /* Switches of the ablation, see adcgs_train_leave_out(). */
     uint8_t without_coarse, without_fine, without_rate, without_densification, without_weight_steps;
-    uint8_t without_rounding; /**< values and weights stay binary32, for a model that is stored uncompressed */
-    uint8_t bf16;          /**< rendering networks are trained in bf16; see adcgs_bf16_check() */
-    uint8_t retime_duplicates; /**< a duplicated image gets the timestamp of its content */
+    uint8_t without_rounding;           /**< values and weights stay binary32, for a model that is stored uncompressed */
+    uint8_t bf16;                       /**< rendering networks are trained in bf16; see adcgs_bf16_check() */
+    uint8_t retime_duplicates;          /**< a duplicated image gets the timestamp of its content */
     uint8_t exposure_step_compensation; /**< steps of light are corrected (data/light.h) by the caller that opens the scene */
-    float trial_share;     /**< iterations of a trial (trial.h), relative to the run; fewer than 100: no trials */
-    uint8_t gains;         /**< cameras, and images of a static scene, have a gain each in training (exposure.h) */
-    uint8_t black_levels;  /**< cameras have a black level each in training (black_level.h) */
-    uint8_t residual_densify; /**< anchors also grow where several views miss light (residual_densify.h) */
-    uint8_t prune_floaters; /**< static primitives in space that matching found empty are pruned (floaters.h) */
+    float trial_share;                  /**< iterations of a trial (trial.h), relative to the run; fewer than 100: no trials */
+    uint8_t gains;                      /**< cameras, and images of a static scene, have a gain each in training (exposure.h) */
+    uint8_t black_levels;               /**< cameras have a black level each in training (black_level.h) */
+    uint8_t residual_densify;           /**< anchors also grow where several views miss light (residual_densify.h) */
+    uint8_t prune_floaters;             /**< static primitives in space that matching found empty are pruned (floaters.h) */
     uint8_t matching_frames; /**< maximum number of frames matched for the first anchors, for static cameras; 0: none */
 } adcgs_train_config;
 

@@ -15,8 +15,12 @@ static adcgs_status load_pictures(adcgs_trainer *t, int divide, adcgs_error *err
     if (t->config.retime_duplicates && !t->thumbnails && !(own = adcgs_alloc(NULL, t->n_views, sizeof *own, error)))
         return adcgs_alloc_status(error);
     adcgs_thumbnail *const thumbnails = own ? own : t->thumbnails;
-    const adcgs_image_store_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
-                                              .progress = t->loading, .user = t->loading_user, .thumbnails = thumbnails };
+    const adcgs_image_store_config config = {.split = ADCGS_SPLIT_TRAIN,
+                                             .divide = divide,
+                                             .memory = t->picture_memory,
+                                             .progress = t->loading,
+                                             .user = t->loading_user,
+                                             .thumbnails = thumbnails};
     adcgs_status status = adcgs_image_store_load(&t->pictures, t->scene, &config, t->pool, error);
     if (status == ADCGS_OK && thumbnails)
         status = adcgs_retime_duplicates(t, thumbnails, error);
@@ -68,7 +72,7 @@ adcgs_status adcgs_trainer_loss(adcgs_trainer *t, uint32_t view, const float *ta
     const adcgs_view *v = &t->views[view].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
     const uint8_t *const hidden = adcgs_image_store_mask(t->pictures, view);
-    const adcgs_loss_shares shares = { t->config.ssim_weight, t->config.l2_share };
+    const adcgs_loss_shares shares = {t->config.ssim_weight, t->config.l2_share};
     size_t known = plane;
     ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->width, v->height, &shares, t->grad, value, error));
     for (size_t i = 0; hidden && i < plane; i++) {
@@ -109,7 +113,7 @@ adcgs_status adcgs_trainer_loss_crop(adcgs_trainer *t, uint32_t view, const adcg
     const adcgs_view *v = &t->views[view].view;
     const size_t wide = (size_t)v->width, w = (size_t)crop->width, h = (size_t)crop->height;
     const size_t x = (size_t)lrintf(v->cx - crop->cx), y = (size_t)lrintf(v->cy - crop->cy);
-    const adcgs_loss_shares shares = { t->config.ssim_weight, t->config.l2_share };
+    const adcgs_loss_shares shares = {t->config.ssim_weight, t->config.l2_share};
     for (size_t c = 0; c < 3; c++) /* in place: writes never pass the reads */
         for (size_t j = 0; j < h; j++)
             memmove(t->taken + (c * h + j) * w, t->taken + (c * (size_t)v->height + y + j) * wide + x, w * sizeof(float));

@@ -57,9 +57,10 @@ static adcgs_status agree(adcgs_trainer *t, adcgs_error *error)
     for (int r = 1; r < t->team->size; r++)
         if (sums[r] != sums[0]) {
             t->torn = 1; /* it is unknown whose state is right */
-            return adcgs_fail(error, ADCGS_ERR_DATA, "at iteration %u run %d of the %d that train together has a different model "
-                              "from the first: expected the same programs, libraries, images and checkpoints", t->iteration,
-                              r + 1, t->team->size);
+            return adcgs_fail(error, ADCGS_ERR_DATA,
+                              "at iteration %u run %d of the %d that train together has a different model "
+                              "from the first: expected the same programs, libraries, images and checkpoints",
+                              t->iteration, r + 1, t->team->size);
         }
     return ADCGS_OK;
 }
@@ -143,8 +144,10 @@ adcgs_status adcgs_trainer_finish(adcgs_trainer *t, adcgs_train_report *report, 
     if (!t->iteration)
         return adcgs_fail(error, ADCGS_ERR_DATA, "no file to write: the run is before its first iteration");
     if (!is_finite(t))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "no file to write: training has diverged at iteration %u; continue the run, "
-                          "which then rolls back", t->iteration);
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "no file to write: training has diverged at iteration %u; continue the run, "
+                          "which then rolls back",
+                          t->iteration);
     adcgs_trainer_prepare_networks(t);
     ADCGS_TRY(adcgs_stages_skip(t, error));
     ADCGS_TRY(adcgs_stages_finish(t, error));
@@ -198,7 +201,7 @@ static adcgs_status end(adcgs_trainer *t, adcgs_error *error)
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
 {
     const adcgs_time begin = begin_of(t);
-    reports r = { observe, user, adcgs_seconds(), 0, t->iteration };
+    reports r = {observe, user, adcgs_seconds(), 0, t->iteration};
     *stopped = 0;
     adcgs_trainer_prepare_networks(t);
     ADCGS_TRY(take_snapshot(t, error));
@@ -208,8 +211,10 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         ADCGS_TRY(take_time(t, begin, error));
         const double progress = adcgs_trainer_progress(t);
         if (progress >= 1 && !t->iteration)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "the time limit of %g s ended after %.1f s, before training began: "
-                              "it includes reading the scene", t->config.time_limit, t->elapsed.clock);
+            return adcgs_fail(error, ADCGS_ERR_USAGE,
+                              "the time limit of %g s ended after %.1f s, before training began: "
+                              "it includes reading the scene",
+                              t->config.time_limit, t->elapsed.clock);
         if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
             int stops;
             ADCGS_TRY(tell(t, &r, progress, &stops, error));

@@ -14,16 +14,16 @@ typedef struct adcgs_train_report {
     const char *stage;
     uint32_t iteration, iterations;
     uint32_t anchors;
-    int divide;             /**< factor of image reduction in use; at the start, the next one */
-    double loss, psnr;      /**< running means over training views; none at iteration 0 */
-    double bytes;           /**< estimated bytes of the features; 0 before rate is measured */
+    int divide;                  /**< factor of image reduction in use; at the start, the next one */
+    double loss, psnr;           /**< running means over training views; none at iteration 0 */
+    double bytes;                /**< estimated bytes of the features; 0 before rate is measured */
     double stream[ADCGS_GROUPS]; /**< the same for eta, f_v, Sigma_v, C_v (layer 0 without its flags) and the chunks of f_g */
     double lambda;
-    adcgs_time spent;       /**< since the start */
-    double rate;            /**< recent iterations per second */
-    double left;            /**< estimated seconds; NaN before the first iteration */
+    adcgs_time spent; /**< since the start */
+    double rate;      /**< recent iterations per second */
+    double left;      /**< estimated seconds; NaN before the first iteration */
     int rollbacks;
-    int attempt;            /**< try of the rate search, from 1; 0 outside the search */
+    int attempt; /**< try of the rate search, from 1; 0 outside the search */
 } adcgs_train_report;
 
 /** Called often; returns nonzero to stop training (a checkpoint can then be saved). */

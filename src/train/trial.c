@@ -55,16 +55,26 @@ static int has_retimed(const adcgs_trainer *t)
 static int applies(const adcgs_trainer *t, int mechanism)
 {
     switch (mechanism) {
-    case ADCGS_MATCHING: return t->stereo.n_still > 0 || t->stereo.n_moving > 0;
-    case ADCGS_GAINS: return t->exposure.n > 0;
-    case ADCGS_BLACK_LEVELS: return has_black_levels(t);
-    case ADCGS_LIFETIMES: return t->config.params.spans != 0;
-    case ADCGS_BODIES: return t->stereo.n_bodies > 0;
-    case ADCGS_RETIMING: return has_retimed(t);
-    case ADCGS_RESIDUALS: return t->scene->points.n >= ADCGS_POINTS_LEAST && t->n_views >= 3 * t->scene->n_times;
-    case ADCGS_FLOATERS: return t->stereo.maps != NULL;
-    case ADCGS_STATIC_ANCHORS: return t->config.params.time_rows > 0;
-    default: return 1;
+    case ADCGS_MATCHING:
+        return t->stereo.n_still > 0 || t->stereo.n_moving > 0;
+    case ADCGS_GAINS:
+        return t->exposure.n > 0;
+    case ADCGS_BLACK_LEVELS:
+        return has_black_levels(t);
+    case ADCGS_LIFETIMES:
+        return t->config.params.spans != 0;
+    case ADCGS_BODIES:
+        return t->stereo.n_bodies > 0;
+    case ADCGS_RETIMING:
+        return has_retimed(t);
+    case ADCGS_RESIDUALS:
+        return t->scene->points.n >= ADCGS_POINTS_LEAST && t->n_views >= 3 * t->scene->n_times;
+    case ADCGS_FLOATERS:
+        return t->stereo.maps != NULL;
+    case ADCGS_STATIC_ANCHORS:
+        return t->config.params.time_rows > 0;
+    default:
+        return 1;
     }
 }
 
@@ -118,7 +128,7 @@ static adcgs_train_config trial_config(const adcgs_train_config *config, const a
 /** PSNR of a view, after a fit of gain and black level to the image if gains apply. */
 static adcgs_status judge_view(adcgs_trainer *t, const adcgs_scene_view *v, int fits, double *psnr, adcgs_error *error)
 {
-    const adcgs_pass_mode mode = { .deform = ADCGS_DEFORM_ALL };
+    const adcgs_pass_mode mode = {.deform = ADCGS_DEFORM_ALL};
     adcgs_camera camera;
     adcgs_view view;
     float *taken;
@@ -170,7 +180,7 @@ static adcgs_status run_trial(score *out, const adcgs_train_config *config, tria
         r->details = t->decisions.details;
     if (first || matched) {
         r->matched = t->stereo;
-        t->stereo = (adcgs_stereo){ .n_still = 0 };
+        t->stereo = (adcgs_stereo){.n_still = 0};
     }
     adcgs_trainer_free(&t);
     return status;
@@ -244,7 +254,7 @@ static adcgs_status try_all(trials *r, adcgs_trials *out, adcgs_error *error)
             continue;
         adcgs_trial *t = &out->of[out->n++];
         ADCGS_TRY(try_without(r, m, 0, &without, error));
-        *t = (adcgs_trial){ .mechanism = m, .with = mean(&r->base[0], n), .without = mean(&without, n) };
+        *t = (adcgs_trial){.mechanism = m, .with = mean(&r->base[0], n), .without = mean(&without, n)};
         if (is_better(&without, &r->base[0], n))
             ADCGS_TRY(ask_again(r, m, t, error));
     }
@@ -269,15 +279,15 @@ static adcgs_status apply(const adcgs_trials *out, adcgs_train_config *config, a
 adcgs_status adcgs_trials_run(adcgs_trials *out, adcgs_train_config *config, const adcgs_scene *scene,
                               const adcgs_trials_options *options, adcgs_error *error)
 {
-    adcgs_trial_scene held = { .scene = { .n_times = 0 } };
-    *out = (adcgs_trials){ .iterations = adcgs_trial_length(config) };
+    adcgs_trial_scene held = {.scene = {.n_times = 0}};
+    *out = (adcgs_trials){.iterations = adcgs_trial_length(config)};
     if (!out->iterations || scene->splats)
         return ADCGS_OK;
     ADCGS_TRY(adcgs_trial_scene_make(&held, scene, error));
     trials *r = adcgs_alloc(NULL, 1, sizeof *r, error);
     adcgs_status status = r ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK && held.scene.n_views[ADCGS_SPLIT_VAL]) {
-        *r = (trials){ .o = options, .config = config, .scene = &held.scene };
+        *r = (trials){.o = options, .config = config, .scene = &held.scene};
         out->views = judges_of(r);
         status = try_all(r, out, error);
     }
@@ -296,10 +306,10 @@ void adcgs_trials_format(const adcgs_trials *t, char text[ADCGS_TRIALS_TEXT])
         return;
     n = (size_t)snprintf(text, ADCGS_TRIALS_TEXT, "views=%u iterations=%u", t->views, t->iterations);
     for (uint32_t i = 0; i < t->n; i++)
-        n += (size_t)snprintf(text + n, ADCGS_TRIALS_TEXT - n, " %s=%.2f/%.2f",
-                              adcgs_mechanism_names[t->of[i].mechanism], t->of[i].with, t->of[i].without);
+        n += (size_t)snprintf(text + n, ADCGS_TRIALS_TEXT - n, " %s=%.2f/%.2f", adcgs_mechanism_names[t->of[i].mechanism],
+                              t->of[i].with, t->of[i].without);
     for (uint32_t i = 0, dropped = 0; i < t->n; i++)
         if (t->of[i].dropped)
-            n += (size_t)snprintf(text + n, ADCGS_TRIALS_TEXT - n, "%s%s", dropped++ ? "," : " dropped=",
-                                  adcgs_mechanism_names[t->of[i].mechanism]);
+            n += (size_t)snprintf(text + n, ADCGS_TRIALS_TEXT - n, "%s%s",
+                                  dropped++ ? "," : " dropped=", adcgs_mechanism_names[t->of[i].mechanism]);
 }

@@ -25,9 +25,9 @@ typedef struct adcgs_trial {
 } adcgs_trial;
 
 typedef struct adcgs_trials {
-    uint32_t n;           /**< mechanisms tested; 0: none, as in a short run */
-    uint32_t views;       /**< held-out views */
-    uint32_t iterations;  /**< of each trial */
+    uint32_t n;          /**< mechanisms tested; 0: none, as in a short run */
+    uint32_t views;      /**< held-out views */
+    uint32_t iterations; /**< of each trial */
     adcgs_trial of[ADCGS_MECHANISMS];
 } adcgs_trials;
 
@@ -37,7 +37,7 @@ typedef int (*adcgs_trials_progress)(void *user, const char *without, uint32_t d
 typedef struct adcgs_trials_options {
     adcgs_cpu_level cpu;
     adcgs_pool *pool;
-    uint64_t memory;      /**< maximum bytes of images, as in adcgs_image_store_config */
+    uint64_t memory;                /**< maximum bytes of images, as in adcgs_image_store_config */
     adcgs_trials_progress progress; /**< or NULL */
     void *user;
 } adcgs_trials_options;

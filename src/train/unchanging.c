@@ -41,7 +41,7 @@ static adcgs_status add_picture(adcgs_trainer *t, const adcgs_train_view *v, con
     const size_t pixels = (size_t)v->view.width * (size_t)v->view.height;
     adcgs_raster_grads grads = t->pass->grads;
     grads.screen = NULL;
-    adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     ADCGS_TRY(adcgs_view_render(t, &v->view, ADCGS_MEAN_LIGHT, t->image, 1, error));
     memset(t->grad, 0, 3 * pixels * sizeof *t->grad);
     for (size_t i = 0; i < pixels; i++)
@@ -92,8 +92,8 @@ adcgs_status adcgs_changing_share(adcgs_trainer *t, float *share, adcgs_error *e
     float *const drawn = adcgs_alloc(NULL, t->f->n, sizeof *drawn, error);
     uint32_t *const of = adcgs_alloc(NULL, 2 * (size_t)t->n_views, sizeof *of, error);
     memset(share, 0, t->f->n * sizeof *share);
-    const adcgs_status status = drawn && of ? add_cameras(t, of, of + t->n_views, drawn, share, error) :
-                                              adcgs_alloc_status(error);
+    const adcgs_status status =
+        drawn && of ? add_cameras(t, of, of + t->n_views, drawn, share, error) : adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < t->f->n; i++)
         share[i] = drawn[i] > 0 ? share[i] / drawn[i] : -1;
     adcgs_free(NULL, drawn);

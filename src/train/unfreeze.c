@@ -20,11 +20,11 @@ enum {
 
 /** Residuals and coverage of each anchor in some frames, the earliest first. */
 typedef struct frame_errors {
-    uint32_t n;            /* number of frames */
+    uint32_t n; /* number of frames */
     size_t anchors;
     float views[FRAMES_MAX]; /* number of views used */
-    float (*missing)[3];   /* [n][anchors] sums over pixels */
-    float *pixels;         /* [n][anchors] */
+    float (*missing)[3];     /* [n][anchors] sums over pixels */
+    float *pixels;           /* [n][anchors] */
 } frame_errors;
 
 static void frame_errors_clear(frame_errors *m)
@@ -75,7 +75,7 @@ static adcgs_status add_frame(adcgs_trainer *t, frame_errors *m, uint32_t index,
 {
     const float at = t->views[index].t;
     uint32_t asked = 0;
-    adcgs_pass_forward(t->pass, t->f, at, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(t->pass, t->f, at, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     for (uint32_t i = 0; i < t->n_views && asked < CAMERAS; i++)
         if (fabsf(t->views[(index + i) % t->n_views].t - at) < 1e-5f) {
             ADCGS_TRY(add_view(t, m, (index + i) % t->n_views, error));
@@ -121,7 +121,7 @@ typedef struct verdict {
 /** For static anchors, a residual counts only if it was not present in the earliest frame. */
 static verdict judge(const frame_errors *m, uint32_t anchor, int moves)
 {
-    verdict v = { 0, 0, 0 };
+    verdict v = {0, 0, 0};
     float off[FRAMES_MAX];
     uint32_t n = 0;
     for (uint32_t i = 1; i < m->n; i++) {

@@ -233,7 +233,7 @@ static int least_present(const adcgs_mlp *m, const adcgs_param *param, const adc
 void adcgs_fmodel_narrow(adcgs_fmodel *f, int group, const uint8_t *keep)
 {
     adcgs_param *param = &f->param[group];
-    float *const blocks[] = { param->p, param->g, param->m, param->v };
+    float *const blocks[] = {param->p, param->g, param->m, param->v};
     const adcgs_mlp old = f->mlp[group];
     int width = 0;
     for (int u = 0; u < old.width; u++)
@@ -258,8 +258,8 @@ typedef struct slimming {
     adcgs_trainer *t;
     int group, width, left; /**< width before, units left */
     uint8_t keep[WIDTH_MAX], best_keep[WIDTH_MAX];
-    float *best;            /**< parameters of the lowest cost */
-    double before, least;   /**< distortion with all units; lowest cost so far */
+    float *best;          /**< parameters of the lowest cost */
+    double before, least; /**< distortion with all units; lowest cost so far */
     adcgs_gram gram;
 } slimming;
 
@@ -324,7 +324,7 @@ adcgs_status adcgs_prune_units(adcgs_trainer *t, adcgs_error *error)
         if (t->f->mlp[i].n)
             adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, 1); /* entropy networks take the coder's form */
     for (int i = ADCGS_P_ANCHOR; status == ADCGS_OK && i < ADCGS_P_COUNT; i++) {
-        slimming s = { .t = t, .group = i };
+        slimming s = {.t = t, .group = i};
         /* E_q trades distortion for bits: neither measure alone can judge it. */
         if (!t->f->mlp[i].hidden || i == ADCGS_P_E_STEPS || adcgs_fmodel_is_settled(t->f, i))
             continue;

@@ -24,15 +24,18 @@ static int follows_exposure(const adcgs_trainer *t, double progress)
 static adcgs_pass_mode mode_of(const adcgs_trainer *t, double progress, uint32_t number)
 {
     const adcgs_train_config *c = &t->config;
-    const adcgs_quant quant = t->frozen ? ADCGS_QUANT_NONE : t->rounding ? ADCGS_QUANT_ROUND :
-                              progress >= c->quant_noise_start && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
-    return (adcgs_pass_mode){ .quant = quant,
-                              .deform = t->f->follows ? ADCGS_DEFORM_ALL :
-                                        progress < c->deform_start && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE :
-                                        progress < c->fine_start   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
-                              .bf16 = c->bf16,
-                              .dropout = progress >= c->quant_round_start ? 0 : c->dropout,
-                              .seed = (uint32_t)adcgs_random64(c->seed, 3000, number) };
+    const adcgs_quant quant = t->frozen                                              ? ADCGS_QUANT_NONE
+                              : t->rounding                                          ? ADCGS_QUANT_ROUND
+                              : progress >= c->quant_noise_start && !c->without_rate ? ADCGS_QUANT_NOISE
+                                                                                     : ADCGS_QUANT_NONE;
+    return (adcgs_pass_mode){.quant = quant,
+                             .deform = t->f->follows                                       ? ADCGS_DEFORM_ALL
+                                       : progress < c->deform_start && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE
+                                       : progress < c->fine_start                          ? ADCGS_DEFORM_COARSE
+                                                                                           : ADCGS_DEFORM_ALL,
+                             .bf16 = c->bf16,
+                             .dropout = progress >= c->quant_round_start ? 0 : c->dropout,
+                             .seed = (uint32_t)adcgs_random64(c->seed, 3000, number)};
 }
 
 /** True if a view's image contains the centre of one of an anchor's primitives, or pixels that one covers. */
@@ -43,7 +46,7 @@ static int is_in_view(const adcgs_trainer *t, const adcgs_view *v, uint32_t anch
         const size_t slot = adcgs_fmodel_slot(t->f, anchor, k);
         size_t at;
         if (t->pass->grads.weight[slot] > 0 ||
-            adcgs_view_pixel(v, (const float[]){ mean[0][slot], mean[1][slot], mean[2][slot] }, &at))
+            adcgs_view_pixel(v, (const float[]){mean[0][slot], mean[1][slot], mean[2][slot]}, &at))
             return 1;
     }
     return 0;
@@ -122,7 +125,7 @@ adcgs_status adcgs_view_pass(adcgs_trainer *t, double progress, uint32_t number,
     ADCGS_TRY(look_at_picture(t, progress, number, &grads, result, error));
     add_stats(t, &v->view, &grads, stats);
     ADCGS_TRY(add_prices(t, progress, number, &v->view, mode.deform, &grads, error));
-    adcgs_rate rate = { .total = 0 };
+    adcgs_rate rate = {.total = 0};
     adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)adcgs_cost_of_bit(t) : 0, c->rate_period,
                         (int)(turn % (uint32_t)c->rate_period), rated ? &rate : NULL);
     memcpy(result->bits, rate.bits, sizeof result->bits);

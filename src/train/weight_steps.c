@@ -22,8 +22,8 @@ static void encode_rounded(adcgs_range_enc *e, adcgs_tensor *t, const float *w)
 adcgs_status adcgs_weight_step_bits(const adcgs_mlp *m, const float *p, int layer, int e, double *bits, adcgs_error *error)
 {
     const size_t end = layer < m->hidden ? m->w[layer + 1] : m->n, n = (size_t)m->in[layer] * (size_t)m->n_out[layer];
-    adcgs_tensor w = { (uint32_t)m->n_out[layer], (uint32_t)m->in[layer], 0, (uint8_t)e, NULL };
-    adcgs_tensor b = { (uint32_t)(end - m->b[layer]), 1, 0, (uint8_t)e, NULL };
+    adcgs_tensor w = {(uint32_t)m->n_out[layer], (uint32_t)m->in[layer], 0, (uint8_t)e, NULL};
+    adcgs_tensor b = {(uint32_t)(end - m->b[layer]), 1, 0, (uint8_t)e, NULL};
     adcgs_buffer bytes;
     adcgs_range_enc enc;
     w.m = b.m = adcgs_alloc(NULL, ADCGS_MAX(n, b.rows), sizeof *w.m, error);
@@ -46,7 +46,7 @@ adcgs_status adcgs_weight_step_bits(const adcgs_mlp *m, const float *p, int laye
 typedef struct search {
     adcgs_trainer *t;
     int group, layer, min, max; /**< min, max: exponents allowed */
-    double base; /**< distortion of the current networks in bits: loss, or the features' bits */
+    double base;                /**< distortion of the current networks in bits: loss, or the features' bits */
 } search;
 
 static adcgs_status cost_of(const search *s, int e, double *cost, adcgs_error *error)
@@ -143,7 +143,7 @@ static adcgs_status choose_network(adcgs_trainer *t, int group, int8_t chosen[AD
 {
     adcgs_mlp *m = &t->f->mlp[group];
     const float *p = t->f->param[group].p;
-    search s = { .t = t, .group = group, .max = m->entropy ? ADCGS_E24_BITS : ADCGS_WEIGHT_STEP_MAX };
+    search s = {.t = t, .group = group, .max = m->entropy ? ADCGS_E24_BITS : ADCGS_WEIGHT_STEP_MAX};
     int8_t before[ADCGS_MLP_LAYERS];
     memcpy(before, m->weight_step, sizeof before);
     ADCGS_TRY(adcgs_sample_distortion(t, group, &s.base, error));

@@ -23,8 +23,8 @@ typedef struct settings {
 
 static void measure_all(const settings *s)
 {
-    static const int sizes[][2] = { { 400, 400 }, { 200, 200 }, { 800, 800 }, { 1352, 1014 } };
-    static const uint32_t splats[] = { 20000, 5000, 50000, 100000 }, anchors[] = { 2000, 500, 5000, 10000 };
+    static const int sizes[][2] = {{400, 400}, {200, 200}, {800, 800}, {1352, 1014}};
+    static const uint32_t splats[] = {20000, 5000, 50000, 100000}, anchors[] = {2000, 500, 5000, 10000};
     const bench *b = &s->b;
     bench_header(b);
     bench_kernels(b);
@@ -56,8 +56,8 @@ static adcgs_status close_table(settings *s, adcgs_error *error)
 
 static adcgs_status check_group(const bench *b, adcgs_error *error)
 {
-    static const char *const groups[] = { "frame", "stages", "loss", "exactness", "levels", "dense", "networks", "integer",
-                                          "decode", "kernels", "train", "play" };
+    static const char *const groups[] = {"frame",    "stages",  "loss",   "exactness", "levels", "dense",
+                                         "networks", "integer", "decode", "kernels",   "train",  "play"};
     for (size_t i = 0; i < ADCGS_COUNTOF(groups); i++)
         if (bench_wants(b, groups[i]))
             return ADCGS_OK;
@@ -66,26 +66,28 @@ static adcgs_status check_group(const bench *b, adcgs_error *error)
 
 int main(int argc, char **argv)
 {
-    settings s = { .b = { .rounds = 15, .turn = 2e-3, .threads = (int)sysconf(_SC_NPROCESSORS_ONLN) }, .scenes = "bench-scenes" };
+    settings s = {.b = {.rounds = 15, .turn = 2e-3, .threads = (int)sysconf(_SC_NPROCESSORS_ONLN)}, .scenes = "bench-scenes"};
     const adcgs_option options[] = {
-        { "output", 'o', ADCGS_OPTION_STRING, &s.output, 0, 0, "FILE", "also write a table of all figures here (CSV)", NULL,
-          NULL },
-        { "group", 'g', ADCGS_OPTION_STRING, &s.b.only, 0, 0, "NAME",
-          "only groups whose name begins so: frame, stages, loss, exactness,\n"
-          "levels, dense, networks, integer, decode, kernels, train, play",
-          NULL, NULL },
-        { "cpu", 'c', ADCGS_OPTION_CHOICE, &s.cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)",
-          adcgs_cpu_names, NULL },
-        { "threads", 't', ADCGS_OPTION_INT, &s.b.threads, 1, 256, "N", "threads at most (default: one per CPU)", NULL, NULL },
-        { "turns", 'r', ADCGS_OPTION_INT, &s.b.rounds, 3, 101, "N", "turns of each item (default 15)", NULL, NULL },
-        { "scenes", 's', ADCGS_OPTION_STRING, &s.scenes, 0, 0, "DIR",
-          "folder of the training scene, generated if missing (default bench-scenes)", NULL, NULL },
-        { "quick", 'q', ADCGS_OPTION_FLAG, &s.quick, 0, 0, NULL, "one size, one number of splats", NULL, NULL },
+        {"output", 'o', ADCGS_OPTION_STRING, &s.output, 0, 0, "FILE", "also write a table of all figures here (CSV)", NULL, NULL},
+        {"group", 'g', ADCGS_OPTION_STRING, &s.b.only, 0, 0, "NAME",
+         "only groups whose name begins so: frame, stages, loss, exactness,\n"
+         "levels, dense, networks, integer, decode, kernels, train, play",
+         NULL, NULL},
+        {"cpu", 'c', ADCGS_OPTION_CHOICE, &s.cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)",
+         adcgs_cpu_names, NULL},
+        {"threads", 't', ADCGS_OPTION_INT, &s.b.threads, 1, 256, "N", "threads at most (default: one per CPU)", NULL, NULL},
+        {"turns", 'r', ADCGS_OPTION_INT, &s.b.rounds, 3, 101, "N", "turns of each item (default 15)", NULL, NULL},
+        {"scenes", 's', ADCGS_OPTION_STRING, &s.scenes, 0, 0, "DIR",
+         "folder of the training scene, generated if missing (default bench-scenes)", NULL, NULL},
+        {"quick", 'q', ADCGS_OPTION_FLAG, &s.quick, 0, 0, NULL, "one size, one number of splats", NULL, NULL},
     };
-    const adcgs_cli cli = { .program = "adcgs-bench", .operands = "", .summary = "Measures this build on this machine.",
-                            .details = "Compared items take turns, so other load distorts times, but hardly ratios.\n",
-                            .options = options, .n_options = ADCGS_COUNTOF(options) };
-    adcgs_error error = { .status = ADCGS_OK };
+    const adcgs_cli cli = {.program = "adcgs-bench",
+                           .operands = "",
+                           .summary = "Measures this build on this machine.",
+                           .details = "Compared items take turns, so other load distorts times, but hardly ratios.\n",
+                           .options = options,
+                           .n_options = ADCGS_COUNTOF(options)};
+    adcgs_error error = {.status = ADCGS_OK};
     int first;
     const int left = adcgs_cli_parse(&cli, argc, argv, &first);
     if (left >= 0)

@@ -13,7 +13,7 @@
 #define OVERLAP 36.0 /* splats that cover a pixel, about */
 #define FILTER 0.3f
 
-static const float background[3] = { 0.1f, 0.2f, 0.3f };
+static const float background[3] = {0.1f, 0.2f, 0.3f};
 
 /**
  * Binary32 operations that would keep the multiply-add units busy, counted from the instructions of the kernels. The difference
@@ -63,16 +63,16 @@ static kernels kernels_of(adcgs_cpu_level level, int fast)
     switch (level) {
 #ifdef HAVE_AVX512
     case ADCGS_CPU_AVX512:
-        return fast ? (kernels){ &bench_fast_raster_avx512, &bench_fast_back_avx512, &plain_avx512 }
-                    : (kernels){ &adcgs_raster_avx512, &adcgs_back_avx512, &plain_avx512 };
+        return fast ? (kernels){&bench_fast_raster_avx512, &bench_fast_back_avx512, &plain_avx512}
+                    : (kernels){&adcgs_raster_avx512, &adcgs_back_avx512, &plain_avx512};
 #endif
 #ifdef HAVE_AVX2
     case ADCGS_CPU_AVX2:
-        return fast ? (kernels){ &bench_fast_raster_avx2, &bench_fast_back_avx2, &plain_avx2 }
-                    : (kernels){ &adcgs_raster_avx2, &adcgs_back_avx2, &plain_avx2 };
+        return fast ? (kernels){&bench_fast_raster_avx2, &bench_fast_back_avx2, &plain_avx2}
+                    : (kernels){&adcgs_raster_avx2, &adcgs_back_avx2, &plain_avx2};
 #endif
     default:
-        return (kernels){ &adcgs_raster_scalar, &adcgs_back_scalar, &plain_scalar };
+        return (kernels){&adcgs_raster_scalar, &adcgs_back_scalar, &plain_scalar};
     }
 }
 
@@ -89,15 +89,17 @@ static void draw_and_back(void *arg)
     frame *f = arg;
     bench_check(adcgs_raster_forward(f->raster, &f->primitives, &f->view, background, FILTER, f->rgb, 1, NULL), NULL);
     bench_check(adcgs_raster_backward(f->back, f->raster, &f->primitives, &f->view, background, FILTER, f->rgb, f->grad, &f->to,
-                                      NULL), NULL);
+                                      NULL),
+                NULL);
 }
 
 static void loss(void *arg)
 {
     frame *f = arg;
     adcgs_loss_value value;
-    bench_check(adcgs_loss_image(f->loss, f->rgb, f->target, f->view.width, f->view.height, &(adcgs_loss_shares){ 0.2f, 0.9f },
-                                 f->grads, &value, NULL), NULL);
+    bench_check(adcgs_loss_image(f->loss, f->rgb, f->target, f->view.width, f->view.height, &(adcgs_loss_shares){0.2f, 0.9f},
+                                 f->grads, &value, NULL),
+                NULL);
 }
 
 /* ---- Stages ---- */
@@ -224,8 +226,11 @@ static void make_stages(frame *f)
     adcgs_raster_kept(f->raster, &f->kept);
     f->tiles = f->kept.tiles_x * f->kept.tiles_y;
     uint32_t areas = 0;
-    f->project = (adcgs_project_job){ .primitives = &f->primitives, .view = &f->view, .filter = FILTER,
-                                      .tiles_x = f->kept.tiles_x, .tiles_y = f->kept.tiles_y };
+    f->project = (adcgs_project_job){.primitives = &f->primitives,
+                                     .view = &f->view,
+                                     .filter = FILTER,
+                                     .tiles_x = f->kept.tiles_x,
+                                     .tiles_y = f->kept.tiles_y};
     f->project.splats = (void *)bench_floats((size_t)(n + 64) * 16);
     f->project.outlines = (void *)bench_floats((size_t)(n + 64) * 4);
     f->project.keys = (void *)bench_floats((size_t)(n + 64) * 2);
@@ -239,14 +244,28 @@ static void make_stages(frame *f)
         areas += f->project.areas[i];
     f->emitted = (void *)bench_floats(2 * ((size_t)areas + ADCGS_BIN_SLACK));
     sort(f);
-    f->bin = (adcgs_bin_job){ .order = f->bin.order, .from = f->project.splats, .outlines = f->project.outlines,
-                              .tiles_x = f->kept.tiles_x, .to = (void *)bench_floats((size_t)(n + 64) * 16), .first = f->first,
-                              .where = f->where };
-    f->blend = (adcgs_blend_job){ .splats = f->kept.splats, .entries = f->kept.entries, .tile_start = f->kept.tile_start,
-                                  .tiles_x = f->kept.tiles_x, .width = f->view.width, .height = f->view.height,
-                                  .background = { background[0], background[1], background[2] }, .rgb = f->rgb };
-    f->gradients = (adcgs_back_job){ .kept = f->kept, .primitives = &f->primitives, .view = &f->view, .filter = FILTER,
-                                     .rgb = f->rgb, .grad = f->grad, .out = f->to };
+    f->bin = (adcgs_bin_job){.order = f->bin.order,
+                             .from = f->project.splats,
+                             .outlines = f->project.outlines,
+                             .tiles_x = f->kept.tiles_x,
+                             .to = (void *)bench_floats((size_t)(n + 64) * 16),
+                             .first = f->first,
+                             .where = f->where};
+    f->blend = (adcgs_blend_job){.splats = f->kept.splats,
+                                 .entries = f->kept.entries,
+                                 .tile_start = f->kept.tile_start,
+                                 .tiles_x = f->kept.tiles_x,
+                                 .width = f->view.width,
+                                 .height = f->view.height,
+                                 .background = {background[0], background[1], background[2]},
+                                 .rgb = f->rgb};
+    f->gradients = (adcgs_back_job){.kept = f->kept,
+                                    .primitives = &f->primitives,
+                                    .view = &f->view,
+                                    .filter = FILTER,
+                                    .rgb = f->rgb,
+                                    .grad = f->grad,
+                                    .out = f->to};
     f->gradients.sums = bench_floats((size_t)f->kept.tile_start[f->tiles] * SUM_WORDS);
 }
 
@@ -256,9 +275,14 @@ static void make_plain(frame *f)
     uint32_t *one_each = (void *)bench_floats(f->primitives.n + 1);
     for (uint32_t i = 0; i <= f->primitives.n; i++)
         one_each[i] = i;
-    f->plain = (plain_job){ .splats = f->bin.to, .tiles_x = f->kept.tiles_x, .tiles_y = f->kept.tiles_y,
-                            .width = f->view.width, .height = f->view.height,
-                            .background = { background[0], background[1], background[2] }, .rgb = f->target, .grad = f->grad };
+    f->plain = (plain_job){.splats = f->bin.to,
+                           .tiles_x = f->kept.tiles_x,
+                           .tiles_y = f->kept.tiles_y,
+                           .width = f->view.width,
+                           .height = f->view.height,
+                           .background = {background[0], background[1], background[2]},
+                           .rgb = f->target,
+                           .grad = f->grad};
     plain_init(&f->plain, f->primitives.n);
     f->plain_gradients = f->gradients;
     f->plain_gradients.kept.first = one_each;
@@ -267,10 +291,10 @@ static void make_plain(frame *f)
 
 static void make(frame *f, adcgs_cpu_level level, int threads, int width, int height, uint32_t splats)
 {
-    static const double origin[3] = { 0, 0, 0 };
+    static const double origin[3] = {0, 0, 0};
     const adcgs_camera camera = scene_camera(width, height);
-    adcgs_error error = { .status = ADCGS_OK };
-    *f = (frame){ .k = kernels_of(level, 0), .scene = scene_room(splats, OVERLAP, 1) };
+    adcgs_error error = {.status = ADCGS_OK};
+    *f = (frame){.k = kernels_of(level, 0), .scene = scene_room(splats, OVERLAP, 1)};
     f->primitives = scene_primitives(&f->scene);
     bench_check(adcgs_view_init(&f->view, &camera, origin, 1, &error), &error);
     bench_check(adcgs_pool_create(&f->pool, threads, &error), &error);
@@ -285,9 +309,15 @@ static void make(frame *f, adcgs_cpu_level level, int threads, int width, int he
 
 static void clear(frame *f)
 {
-    void *const parts[] = { f->grads, f->rgb, f->target, f->grad, f->project.splats, f->project.outlines, f->project.keys,
-                            f->project.areas, f->keys, f->where, f->first, f->counts, f->emitted, f->bin.to,
-                            f->gradients.sums, (void *)(uintptr_t)f->plain_gradients.kept.first, f->scene.data };
+    void *const parts[] = {f->grads,          f->rgb,
+                           f->target,         f->grad,
+                           f->project.splats, f->project.outlines,
+                           f->project.keys,   f->project.areas,
+                           f->keys,           f->where,
+                           f->first,          f->counts,
+                           f->emitted,        f->bin.to,
+                           f->gradients.sums, (void *)(uintptr_t)f->plain_gradients.kept.first,
+                           f->scene.data};
     plain_clear(&f->plain);
     adcgs_loss_free(&f->loss);
     adcgs_raster_back_free(&f->back);
@@ -313,20 +343,19 @@ static void whole(const bench *b, frame *f, bench_place place)
     const double pixels = (double)place.width * place.height;
     place.group = "frame";
     if (place.threads > 1) { /* the baseline has one thread */
-        bench_group(b, &place, &(bench_item){ "draw", draw, f, pixels, "pixel", 0 }, 1, 0);
+        bench_group(b, &place, &(bench_item){"draw", draw, f, pixels, "pixel", 0}, 1, 0);
         place.group = "frame and gradients";
-        bench_group(b, &place, &(bench_item){ "draw and back", draw_and_back, f, pixels, "pixel", 0 }, 1, 0);
+        bench_group(b, &place, &(bench_item){"draw and back", draw_and_back, f, pixels, "pixel", 0}, 1, 0);
     } else {
-        const bench_item frames[] = { { "draw", draw, f, pixels, "pixel", 0 },
-                                      { "baseline", plain_draw, f, pixels, "pixel", 0 } };
+        const bench_item frames[] = {{"draw", draw, f, pixels, "pixel", 0}, {"baseline", plain_draw, f, pixels, "pixel", 0}};
         bench_group(b, &place, frames, 2, 1);
-        const bench_item gradients[] = { { "draw and back", draw_and_back, f, pixels, "pixel", 0 },
-                                         { "baseline", plain_draw_and_back, f, pixels, "pixel", 0 } };
+        const bench_item gradients[] = {{"draw and back", draw_and_back, f, pixels, "pixel", 0},
+                                        {"baseline", plain_draw_and_back, f, pixels, "pixel", 0}};
         place.group = "frame and gradients";
         bench_group(b, &place, gradients, 2, 1);
     }
     place.group = "loss";
-    bench_group(b, &place, &(bench_item){ "L1 and SSIM", loss, f, pixels, "pixel", LOSS_OPERATIONS }, 1, 0);
+    bench_group(b, &place, &(bench_item){"L1 and SSIM", loss, f, pixels, "pixel", LOSS_OPERATIONS}, 1, 0);
 }
 
 static void stages(const bench *b, frame *f, bench_place place)
@@ -337,12 +366,12 @@ static void stages(const bench *b, frame *f, bench_place place)
     draw_and_back(f);
     project(f);
     sort(f);
-    const bench_item items[] = { { "project", project, f, n, "splat", 0 },
-                                 { "sort by depth", sort, f, n, "splat", 0 },
-                                 { "list tiles", list_tiles, f, listed, "entry", ENTRY_OPERATIONS },
-                                 { "blend", blend, f, drawn, "pair", PAIR_OPERATIONS },
-                                 { "gradients of blend", blend_back, f, drawn, "pair", back },
-                                 { "gradients of project", project_back, f, n, "splat", 0 } };
+    const bench_item items[] = {{"project", project, f, n, "splat", 0},
+                                {"sort by depth", sort, f, n, "splat", 0},
+                                {"list tiles", list_tiles, f, listed, "entry", ENTRY_OPERATIONS},
+                                {"blend", blend, f, drawn, "pair", PAIR_OPERATIONS},
+                                {"gradients of blend", blend_back, f, drawn, "pair", back},
+                                {"gradients of project", project_back, f, n, "splat", 0}};
     place.group = "stages";
     bench_group(b, &place, items, ADCGS_COUNTOF(items), 0);
 }
@@ -354,7 +383,7 @@ void bench_frames(const bench *b, int width, int height, uint32_t splats)
     for (int threads = 1; threads <= b->threads; threads = bench_more_threads(b, threads)) {
         frame f;
         make(&f, b->level, threads, width, height, splats);
-        const bench_place place = { .width = width, .height = height, .splats = splats, .threads = threads };
+        const bench_place place = {.width = width, .height = height, .splats = splats, .threads = threads};
         whole(b, &f, place);
         if (threads == 1)
             stages(b, &f, place);
@@ -380,8 +409,8 @@ static void exactness(const bench *b, bench_place place)
     make(&exact, b->level, 1, place.width, place.height, place.splats);
     make(&fast, b->level, 1, place.width, place.height, place.splats);
     fast.k = kernels_of(b->level, 1);
-    const bench_item items[] = { { "not exact", all_kernels, &fast, exact.n, "splat", 0 },
-                                 { "exact", all_kernels, &exact, exact.n, "splat", 0 } };
+    const bench_item items[] = {{"not exact", all_kernels, &fast, exact.n, "splat", 0},
+                                {"exact", all_kernels, &exact, exact.n, "splat", 0}};
     place.group = "exactness";
     bench_group(b, &place, items, 2, 1);
     clear(&fast);
@@ -390,7 +419,7 @@ static void exactness(const bench *b, bench_place place)
 
 void bench_levels(const bench *b)
 {
-    bench_place place = { .group = "levels", .width = 400, .height = 400, .splats = 20000, .threads = 1 };
+    bench_place place = {.group = "levels", .width = 400, .height = 400, .splats = 20000, .threads = 1};
     if (bench_wants(b, "exactness"))
         exactness(b, place);
     if (!bench_wants(b, "levels"))
@@ -400,7 +429,7 @@ void bench_levels(const bench *b)
     int n = 0;
     for (int level = (int)b->level; level >= ADCGS_CPU_SCALAR; level--, n++) {
         make(&frames[n], (adcgs_cpu_level)level, 1, place.width, place.height, place.splats);
-        items[n] = (bench_item){ adcgs_cpu_name((adcgs_cpu_level)level), draw_and_back, &frames[n], place.splats, "splat", 0 };
+        items[n] = (bench_item){adcgs_cpu_name((adcgs_cpu_level)level), draw_and_back, &frames[n], place.splats, "splat", 0};
     }
     bench_group(b, &place, items, n, 1);
     while (n-- > 0)

@@ -7,8 +7,8 @@
 #include <math.h>
 
 /** Bytes that fit into each cache of most machines, and into none. */
-static const size_t read_bytes[] = { 24 << 10, 384 << 10, 6 << 20, 192 << 20 };
-static const char *const read_names[] = { "read, first cache", "read, second cache", "read, third cache", "read, memory" };
+static const size_t read_bytes[] = {24 << 10, 384 << 10, 6 << 20, 192 << 20};
+static const char *const read_names[] = {"read, first cache", "read, second cache", "read, third cache", "read, memory"};
 
 const bench_loops *bench_loops_of(adcgs_cpu_level level)
 {
@@ -67,7 +67,7 @@ static double best_rate(job *j, adcgs_pool *pool)
 
 static void find(bench *b, adcgs_pool *pool, bench_ceilings *c, const float *memory)
 {
-    job j = { .loops = bench_loops_of(b->level), .kind = FMA, .times = 1 << 21 };
+    job j = {.loops = bench_loops_of(b->level), .kind = FMA, .times = 1 << 21};
     const int threads = adcgs_pool_threads(pool);
     c->fma = best_rate(&j, pool);
     printf("  %-29s %7.1f G operations/s\n", "multiply-add, binary32", 1e-9 * c->fma);
@@ -89,7 +89,7 @@ static void find(bench *b, adcgs_pool *pool, bench_ceilings *c, const float *mem
 void bench_find_ceilings(bench *b)
 {
     float *memory = bench_floats(read_bytes[3] / sizeof(float));
-    adcgs_error error = { .status = ADCGS_OK };
+    adcgs_error error = {.status = ADCGS_OK};
     memset(memory, 1, read_bytes[3]); /* all pages that were never written are the same physical page */
     for (int i = 0; i < 2; i++) {
         adcgs_pool *pool = NULL;

@@ -17,4 +17,4 @@
 #define IADD _mm512_add_epi32
 #include "ceilings_kernels.h"
 
-const bench_loops bench_loops_avx512 = { fma_loop, int16_loop, read_loop };
+const bench_loops bench_loops_avx512 = {fma_loop, int16_loop, read_loop};

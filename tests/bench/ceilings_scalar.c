@@ -20,7 +20,7 @@ static double fma_loop(int times, double *operations)
 
 static double read_loop(const float *from, size_t n)
 {
-    float sum[16] = { 0 };
+    float sum[16] = {0};
     for (size_t i = 0; i < n; i += 16)
         for (size_t j = 0; j < 16; j++)
             sum[j] += from[i + j];
@@ -29,4 +29,4 @@ static double read_loop(const float *from, size_t n)
     return (double)sum[0];
 }
 
-const bench_loops bench_loops_scalar = { fma_loop, NULL, read_loop };
+const bench_loops bench_loops_scalar = {fma_loop, NULL, read_loop};

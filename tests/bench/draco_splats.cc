@@ -30,7 +30,8 @@ extern "C" {
 #include "io/splats.h"
 }
 
-namespace {
+namespace
+{
 
 enum { COLOUR, OPACITY, SCALE, ROTATION, GENERICS };
 const int components[GENERICS] = {3, 1, 3, 4};
@@ -41,10 +42,10 @@ void take(float *out, const adcgs_splats &s, uint32_t i, int attribute)
 {
     const float sign = s.rotation[0][i] < 0 ? -1.0f : 1.0f;
     for (int c = 0; c < components[attribute]; c++)
-        out[c] = attribute == COLOUR     ? s.colour[c][i]
-                 : attribute == OPACITY  ? s.opacity[i]
-                 : attribute == SCALE    ? std::log(s.scale[c][i])
-                                         : sign * s.rotation[c][i];
+        out[c] = attribute == COLOUR    ? s.colour[c][i]
+                 : attribute == OPACITY ? s.opacity[i]
+                 : attribute == SCALE   ? std::log(s.scale[c][i])
+                                        : sign * s.rotation[c][i];
 }
 
 /** The inverse; rounded values become a valid rotation and opacity again. */

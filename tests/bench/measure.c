@@ -21,7 +21,7 @@ void bench_check(adcgs_status status, const adcgs_error *error)
 
 float *bench_floats(size_t n)
 {
-    adcgs_error error = { .status = ADCGS_OK };
+    adcgs_error error = {.status = ADCGS_OK};
     float *p = adcgs_alloc(NULL, n, sizeof *p, &error);
     bench_check(p ? ADCGS_OK : ADCGS_ERR_MEMORY, &error);
     return p;
@@ -92,7 +92,7 @@ static double percentile(const double *v, int n, double share)
 
 static void print_rate(double rate, const char *unit)
 {
-    static const char *const prefixes[] = { "", "k", "M", "G", "T" };
+    static const char *const prefixes[] = {"", "k", "M", "G", "T"};
     size_t i = 0;
     for (; rate >= 1000 && i + 1 < ADCGS_COUNTOF(prefixes); i++)
         rate /= 1000;
@@ -151,7 +151,7 @@ void bench_group(const bench *b, const bench_place *place, const bench_item *ite
 {
     static double seconds[ITEMS_MAX][ROUNDS_MAX], most[2][ROUNDS_MAX];
     const bench_ceilings *const all = &b->ceilings[1];
-    int times[ITEMS_MAX], bound[2] = { 0, 0 };
+    int times[ITEMS_MAX], bound[2] = {0, 0};
     if (b->only && strncmp(place->group, b->only, strlen(b->only)) != 0)
         return;
     for (int i = 0; i < n; i++) {

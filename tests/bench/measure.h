@@ -20,12 +20,12 @@ typedef struct bench_ceilings {
 } bench_ceilings;
 
 typedef struct bench {
-    FILE *csv;            /**< or NULL */
-    int rounds;           /**< turns of each item */
-    double turn;          /**< least duration of a turn, in seconds */
-    const char *only;     /**< groups whose name begins with this, or NULL */
+    FILE *csv;        /**< or NULL */
+    int rounds;       /**< turns of each item */
+    double turn;      /**< least duration of a turn, in seconds */
+    const char *only; /**< groups whose name begins with this, or NULL */
     adcgs_cpu_level level;
-    int threads;          /**< at most */
+    int threads;                /**< at most */
     bench_ceilings ceilings[2]; /**< of one thread, and of all threads */
 } bench;
 

@@ -11,8 +11,8 @@
 #include "grad/raster_backward_isa.h"
 
 typedef struct plain_tile {
-    float t[16][16];   /**< final transmittance, [row][column] */
-    uint32_t end[16];  /**< position in the tile's list where each row ended */
+    float t[16][16];  /**< final transmittance, [row][column] */
+    uint32_t end[16]; /**< position in the tile's list where each row ended */
 } plain_tile;
 
 typedef struct plain_job {
@@ -20,12 +20,12 @@ typedef struct plain_job {
     uint32_t n;
     int tiles_x, tiles_y, width, height;
     float background[3];
-    uint32_t *start, *list;      /**< of each tile */
+    uint32_t *start, *list; /**< of each tile */
     size_t list_room;
     plain_tile *tiles;
-    float *rgb;                  /**< [3][height][width] */
-    const float *grad;           /**< [3][height][width] */
-    float *sums;                 /**< [n][SUM_WORDS], in the format of the backward pass, added over all tiles */
+    float *rgb;        /**< [3][height][width] */
+    const float *grad; /**< [3][height][width] */
+    float *sums;       /**< [n][SUM_WORDS], in the format of the backward pass, added over all tiles */
 } plain_job;
 
 typedef struct plain_dsp {

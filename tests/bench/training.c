@@ -29,7 +29,7 @@ static int reached(void *user, const adcgs_train_report *report)
 
 static void iterate(training *r, uint32_t n)
 {
-    adcgs_error error = { .status = ADCGS_OK };
+    adcgs_error error = {.status = ADCGS_OK};
     int stopped;
     r->until = r->t->iteration + n;
     bench_check(adcgs_trainer_run(r->t, reached, r, &stopped, &error), &error);
@@ -51,7 +51,7 @@ static void some_iterations(void *arg)
 static adcgs_train_config steady(const char *preset, uint32_t anchors)
 {
     adcgs_train_config c;
-    adcgs_error error = { .status = ADCGS_OK };
+    adcgs_error error = {.status = ADCGS_OK};
     bench_check(adcgs_train_preset(&c, preset, &error), &error);
     c.iterations = 1000000;
     c.start_anchors = c.max_anchors = anchors;
@@ -67,9 +67,9 @@ static adcgs_scene *open_scene(const char *folder, int width, int height)
     char path[512];
     struct stat there;
     adcgs_scene *scene;
-    adcgs_error error = { .status = ADCGS_OK };
-    const adcgs_scenes_options made = { .name = "tiny", .width = width, .height = height, .format = "ppm" };
-    const adcgs_scene_options options = { .points_path = NULL };
+    adcgs_error error = {.status = ADCGS_OK};
+    const adcgs_scenes_options made = {.name = "tiny", .width = width, .height = height, .format = "ppm"};
+    const adcgs_scene_options options = {.points_path = NULL};
     snprintf(path, sizeof path, "%s/tiny-%dx%d", folder, width, height);
     if (stat(path, &there) != 0) {
         mkdir(folder, 0777); /* if it fails, the next call fails with a message */
@@ -94,7 +94,7 @@ typedef struct player {
 static void open_stream(void *arg)
 {
     player *p = arg;
-    adcgs_error error = { .status = ADCGS_OK };
+    adcgs_error error = {.status = ADCGS_OK};
     adcgs_close(&p->decoder);
     bench_check(adcgs_open_memory(&p->decoder, p->stream->data, p->stream->size, &p->config, &error), &error);
 }
@@ -103,7 +103,7 @@ static void open_stream(void *arg)
 static void play(void *arg)
 {
     player *p = arg;
-    adcgs_error error = { .status = ADCGS_OK };
+    adcgs_error error = {.status = ADCGS_OK};
     p->next = (p->next + 1) % FRAMES;
     bench_check(adcgs_render(p->decoder, &p->camera, p->length * p->next / FRAMES, &p->frame, &error), &error);
 }
@@ -119,7 +119,7 @@ static void splats_alone(void *arg)
 static void decode_and_play(const bench *b, const adcgs_buffer *stream, bench_place place)
 {
     for (int threads = 1; threads <= b->threads; threads = bench_more_threads(b, threads)) {
-        player p = { .stream = stream };
+        player p = {.stream = stream};
         adcgs_info info;
         adcgs_config_init(&p.config, sizeof p.config);
         p.config.threads = threads;
@@ -128,14 +128,15 @@ static void decode_and_play(const bench *b, const adcgs_buffer *stream, bench_pl
         bench_check(adcgs_get_info(p.decoder, &info, sizeof info, NULL), NULL);
         bench_check(adcgs_get_camera(p.decoder, 0, &p.camera, NULL), NULL);
         p.length = info.time_end - info.time_start;
-        p.frame = (adcgs_frame){ .width = p.camera.width, .height = p.camera.height,
-                                 .rgb = bench_floats(3 * (size_t)p.camera.width * (size_t)p.camera.height) };
+        p.frame = (adcgs_frame){.width = p.camera.width,
+                                .height = p.camera.height,
+                                .rgb = bench_floats(3 * (size_t)p.camera.width * (size_t)p.camera.height)};
         place.threads = threads;
         place.anchors = info.anchors;
         place.splats = info.gaussians;
-        const bench_item items[] = { { "open and decode", open_stream, &p, (double)stream->size, "byte", 0 },
-                                     { "splats of a moment", splats_alone, &p, 1, "frame", 0 },
-                                     { "a whole frame", play, &p, 1, "frame", 0 } };
+        const bench_item items[] = {{"open and decode", open_stream, &p, (double)stream->size, "byte", 0},
+                                    {"splats of a moment", splats_alone, &p, 1, "frame", 0},
+                                    {"a whole frame", play, &p, 1, "frame", 0}};
         bench_group(b, &place, items, ADCGS_COUNTOF(items), 0);
         adcgs_free(NULL, p.frame.rgb);
         adcgs_close(&p.decoder);
@@ -146,7 +147,7 @@ static void decode_and_play(const bench *b, const adcgs_buffer *stream, bench_pl
 static void write_stream(training *r, adcgs_pool *pool, adcgs_buffer *out)
 {
     adcgs_stream stream;
-    adcgs_error error = { .status = ADCGS_OK };
+    adcgs_error error = {.status = ADCGS_OK};
     r->t->config.quant_round_start = 0;
     iterate(r, ROUNDED);
     r->t->config.freeze_start = 0;
@@ -159,7 +160,7 @@ static void write_stream(training *r, adcgs_pool *pool, adcgs_buffer *out)
 void bench_training(const bench *b, const char *scenes, int width, int height, uint32_t anchors, const char *preset)
 {
     char group[64];
-    adcgs_error error = { .status = ADCGS_OK };
+    adcgs_error error = {.status = ADCGS_OK};
     adcgs_buffer stream;
     snprintf(group, sizeof group, "train by preset %s", preset);
     if (!bench_wants(b, group) && !bench_wants(b, "play"))
@@ -169,7 +170,7 @@ void bench_training(const bench *b, const char *scenes, int width, int height, u
     adcgs_train_config config = steady(preset, anchors);
     const int runs = !strcmp(preset, "paper") && adcgs_bf16_check(b->level, NULL) == ADCGS_OK ? 2 : 1;
     for (int threads = 1; threads <= b->threads; threads = bench_more_threads(b, threads)) {
-        training r[2] = { { .until = 0 } };
+        training r[2] = {{.until = 0}};
         adcgs_pool *pool = NULL;
         bench_check(adcgs_pool_create(&pool, threads, &error), &error);
         for (int i = 0; i < runs; i++) {
@@ -178,10 +179,10 @@ void bench_training(const bench *b, const char *scenes, int width, int height, u
             r[i].t->quantise = adcgs_encode_quantise_hook;
             iterate(&r[i], YOUTH + WARM_UP);
         }
-        const bench_item items[] = { { "iterations", some_iterations, &r[0], AT_A_TIME, "iteration", 0 },
-                                     { "iterations in bf16", some_iterations, &r[1], AT_A_TIME, "iteration", 0 } };
+        const bench_item items[] = {{"iterations", some_iterations, &r[0], AT_A_TIME, "iteration", 0},
+                                    {"iterations in bf16", some_iterations, &r[1], AT_A_TIME, "iteration", 0}};
         const uint32_t n = r[0].t->f->n;
-        bench_group(b, &(bench_place){ group, width, height, n, n * r[0].t->f->params.k, threads }, items, runs, 1);
+        bench_group(b, &(bench_place){group, width, height, n, n * r[0].t->f->params.k, threads}, items, runs, 1);
         if (threads == 1)
             write_stream(&r[0], pool, &stream);
         for (int i = 0; i < runs; i++)
@@ -189,7 +190,7 @@ void bench_training(const bench *b, const char *scenes, int width, int height, u
         adcgs_pool_free(&pool);
     }
     snprintf(group, sizeof group, "play preset %s", preset);
-    decode_and_play(b, &stream, (bench_place){ .group = group, .width = width, .height = height });
+    decode_and_play(b, &stream, (bench_place){.group = group, .width = width, .height = height});
     adcgs_scene_free(&scene);
     adcgs_buffer_clear(&stream);
 }

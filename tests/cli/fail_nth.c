@@ -53,10 +53,10 @@ static const struct call {
     kind kind;
     int reason; /* error code of a failing call */
 } calls[] = {
-    {SYS_write, OF_FILE, ENOSPC},    {SYS_pwrite64, OF_FILE, ENOSPC}, {SYS_writev, OF_FILE, ENOSPC},
-    {SYS_pwritev, OF_FILE, ENOSPC},  {SYS_ftruncate, OF_FILE, EIO},   {SYS_fsync, OF_FILE, EIO},
-    {SYS_fdatasync, OF_FILE, EIO},   {SYS_close, CLOSING, EIO},       {SYS_openat, CREATING, ENOSPC},
-    {SYS_renameat2, AT_PATH, EIO},   {SYS_renameat, AT_PATH, EIO},
+    {SYS_write, OF_FILE, ENOSPC},   {SYS_pwrite64, OF_FILE, ENOSPC}, {SYS_writev, OF_FILE, ENOSPC},
+    {SYS_pwritev, OF_FILE, ENOSPC}, {SYS_ftruncate, OF_FILE, EIO},   {SYS_fsync, OF_FILE, EIO},
+    {SYS_fdatasync, OF_FILE, EIO},  {SYS_close, CLOSING, EIO},       {SYS_openat, CREATING, ENOSPC},
+    {SYS_renameat2, AT_PATH, EIO},  {SYS_renameat, AT_PATH, EIO},
 #ifdef SYS_rename
     {SYS_rename, OLD_PATH, EIO},
 #endif
@@ -78,8 +78,8 @@ static int install(void)
     struct sock_filter filter[CALLS + 3];
     filter[0] = (struct sock_filter)BPF_STMT(BPF_LD | BPF_W | BPF_ABS, (uint32_t)offsetof(struct seccomp_data, nr));
     for (int i = 0; i < CALLS; i++)
-        filter[1 + i] = (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)calls[i].number,
-                                                     (uint8_t)(CALLS - i), 0);
+        filter[1 + i] =
+            (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)calls[i].number, (uint8_t)(CALLS - i), 0);
     filter[CALLS + 1] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
     filter[CALLS + 2] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_USER_NOTIF);
     const struct sock_fprog program = {CALLS + 3, filter};
@@ -116,7 +116,9 @@ static int receive_descriptor(int from)
         struct cmsghdr head;
         char room[CMSG_SPACE(sizeof(int))];
     } control;
-    struct msghdr message = {.msg_iov = &data, .msg_iovlen = 1, .msg_control = control.room,
+    struct msghdr message = {.msg_iov = &data,
+                             .msg_iovlen = 1,
+                             .msg_control = control.room,
                              .msg_controllen = sizeof control.room};
     if (recvmsg(from, &message, 0) == 1 && message.msg_controllen >= sizeof control.head)
         memcpy(&fd, CMSG_DATA(&control.head), sizeof fd);

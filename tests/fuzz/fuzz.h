@@ -35,12 +35,12 @@ extern const char *const adcgs_fuzz_seeds[];
 #endif
 
 /** A condition that holds for every input. */
-#define FUZZ_REQUIRE(condition)                                                                   \
-    do {                                                                                          \
-        if (!(condition)) {                                                                       \
-            fprintf(stderr, "%s:%d: fault: false: %s\n", __FILE__, __LINE__, #condition);      \
-            abort();                                                                              \
-        }                                                                                         \
+#define FUZZ_REQUIRE(condition)                                                           \
+    do {                                                                                  \
+        if (!(condition)) {                                                               \
+            fprintf(stderr, "%s:%d: fault: false: %s\n", __FILE__, __LINE__, #condition); \
+            abort();                                                                      \
+        }                                                                                 \
     } while (0)
 
 /** A copy from malloc(), with a zero byte after it, as in loaded files. */

@@ -21,7 +21,7 @@
 #define READS_MOST 100000
 #define HEAVY 2e8 /* products of a frame's networks; frames are rendered only below this */
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/calls", "tests/fuzz/regressions/calls", NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/calls", "tests/fuzz/regressions/calls", NULL};
 
 /* ---- The script ---- */
 
@@ -86,7 +86,7 @@ static void check(adcgs_status status, const adcgs_error *error)
 /** Queries the stream's info; 0 if it is not available yet. */
 static int ask_info(patient *p, adcgs_info *info)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     const adcgs_status status = adcgs_get_info(p->d, info, sizeof *info, &error);
     check(status, &error);
     if (status != ADCGS_OK) {
@@ -105,14 +105,14 @@ static double any_time(script *s, const adcgs_info *info)
 {
     const uint32_t kind = draw(s) % 10;
     const double end = isfinite(info->time_end) ? info->time_end : info->time_start + 1;
-    const double odd[] = { NAN, INFINITY, -INFINITY, 1e300, info->time_committed };
+    const double odd[] = {NAN, INFINITY, -INFINITY, 1e300, info->time_committed};
     return kind < ADCGS_COUNTOF(odd) ? odd[kind] : info->time_start + draw(s) / 255.0 * (end - info->time_start);
 }
 
 static adcgs_camera any_camera(script *s, const adcgs_decoder *d)
 {
-    adcgs_camera c = { .fx = 20, .fy = 20, .cx = 10, .cy = 6, .near_plane = 0.01,
-                       .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3 } };
+    adcgs_camera c =
+        {.fx = 20, .fy = 20, .cx = 10, .cy = 6, .near_plane = 0.01, .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3}};
     const uint32_t kind = draw(s);
     if (kind & 1)
         (void)adcgs_get_camera(d, (int)(kind / 2 % 3), &c, NULL);
@@ -126,9 +126,9 @@ static adcgs_camera any_camera(script *s, const adcgs_decoder *d)
 /** Renders one frame, and checks that its pixels are finite. */
 static adcgs_status ask_picture(patient *p, const adcgs_camera *camera, double time, int kind, adcgs_error *error)
 {
-    float rgb[WIDTH * HEIGHT * 3] = { 0 }, depth[WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
+    float rgb[WIDTH * HEIGHT * 3] = {0}, depth[WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
     uint8_t rgba[4 * WIDTH * HEIGHT];
-    adcgs_frame frame = { camera->width, camera->height, rgb };
+    adcgs_frame frame = {camera->width, camera->height, rgb};
     const int stride = 4 * camera->width;
     if (kind == 1)
         return adcgs_render_rgba8(p->d, camera, time, ADCGS_ALPHA_STRAIGHT, rgba + (HEIGHT - 1) * stride, -stride, error);
@@ -171,7 +171,7 @@ static void ask_texts(patient *p, script *s)
 static adcgs_status ask_one(patient *p, script *s, uint32_t kind)
 {
     adcgs_info info;
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     uint8_t digest[16];
     adcgs_status status = ADCGS_OK;
     if (!ask_info(p, &info) || (double)info.weights * info.gaussians > HEAVY)
@@ -234,10 +234,10 @@ static void configure(adcgs_config *config, script *s)
 /** Pushes a piece of the stream, or ends it. The piece is a copy, so that a sanitizer detects reads beyond its end. */
 static void push_on(way *w, script *s)
 {
-    static const size_t sizes[] = { 0, 1, 13, 64, 300, 2000, 65536, 65536 };
+    static const size_t sizes[] = {0, 1, 13, 64, 300, 2000, 65536, 65536};
     const size_t wanted = sizes[draw(s) % 8], n = ADCGS_MIN(wanted, w->left);
     adcgs_arrival arrived = ADCGS_ARRIVED_NOTHING;
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     size_t used = 0;
     uint8_t *const copy = fuzz_file(w->data, n);
     adcgs_status status = adcgs_push(w->p.d, n ? copy : NULL, n, &used, &arrived, &error);
@@ -259,7 +259,7 @@ static void push_on(way *w, script *s)
 static void push_both(const uint8_t *data, size_t size, script *s)
 {
     adcgs_pool *pool = NULL;
-    way ways[2] = { { .is_over = 1 }, { .is_over = 1 } };
+    way ways[2] = {{.is_over = 1}, {.is_over = 1}};
     if (adcgs_pool_create(&pool, 1 + (int)(draw(s) % 2), NULL) != ADCGS_OK)
         return;
     for (int i = 0; i < 2; i++) {
@@ -267,7 +267,7 @@ static void push_both(const uint8_t *data, size_t size, script *s)
         configure(&config, s);
         config.pool = pool;
         const size_t skipped = config.tune_in ? size * draw(s) / 256 : 0;
-        ways[i] = (way){ .p = { .is_pushed = 1, .segments = -1 }, .data = data + skipped, .left = size - skipped };
+        ways[i] = (way){.p = {.is_pushed = 1, .segments = -1}, .data = data + skipped, .left = size - skipped};
         FUZZ_REQUIRE(adcgs_open_push(&ways[i].p.d, &config, NULL) == ADCGS_OK);
     }
     for (int step = 0; step < STEPS_MOST && !(ways[0].is_over && ways[1].is_over); step++) {
@@ -324,7 +324,7 @@ static uint8_t *change(const uint8_t *data, size_t size, script *s)
 static void compare(patient *p, const source *from, const adcgs_config *config)
 {
     adcgs_decoder *whole = NULL;
-    adcgs_info info = { .truncated = 1 };
+    adcgs_info info = {.truncated = 1};
     if (adcgs_open_memory(&whole, from->data, from->size, config, NULL) == ADCGS_OK)
         FUZZ_REQUIRE(adcgs_get_info(whole, &info, sizeof info, NULL) == ADCGS_OK);
     for (int i = info.segments - 1; !info.truncated && i >= 0; i--) {
@@ -339,14 +339,14 @@ static void compare(patient *p, const source *from, const adcgs_config *config)
 static void seek(const uint8_t *data, size_t size, script *s)
 {
     adcgs_config config;
-    adcgs_error error = { ADCGS_OK, "" };
-    patient p = { .segments = -1 };
+    adcgs_error error = {ADCGS_OK, ""};
+    patient p = {.segments = -1};
     if (size == 0)
         return;
     configure(&config, s);
     const uint32_t faults = draw(s) % 32;
     uint8_t *const other = change(data, size, s);
-    source from = { data, other, size, s, faults & OPENS_WELL ? 0 : faults, 0 };
+    source from = {data, other, size, s, faults & OPENS_WELL ? 0 : faults, 0};
     const adcgs_status status = adcgs_open_at(&p.d, read_at, &from, size, &config, &error);
     check(status, &error);
     FUZZ_REQUIRE((status == ADCGS_OK) == (p.d != NULL));
@@ -365,7 +365,7 @@ static void seek(const uint8_t *data, size_t size, script *s)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const size_t n = size > SCRIPT_BYTES ? size - SCRIPT_BYTES : 0, level = ADCGS_SIGNATURE_BYTES + ADCGS_CHUNK_HEADER_BYTES + 5;
-    script s = { data + n, size - n, (uint32_t)size };
+    script s = {data + n, size - n, (uint32_t)size};
     const uint32_t kind = draw(&s);
     uint8_t *const stream = fuzz_file(data, n);
     if (n > level)

@@ -17,10 +17,10 @@
 
 #include <ftw.h>
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/checkpoint", "tests/fuzz/regressions/checkpoint", NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/checkpoint", "tests/fuzz/regressions/checkpoint", NULL};
 
 enum { STAGES = 4, ITERATIONS = 40, CHANGES_MOST = 64, GOES_ON = 6 };
-static const uint32_t stops[STAGES] = { 0, 12, 24, 38 };
+static const uint32_t stops[STAGES] = {0, 12, 24, 38};
 
 static adcgs_scene *scene;
 static adcgs_train_config config;
@@ -79,8 +79,8 @@ static adcgs_trainer *make(adcgs_error *error)
 /** Makes the scene, whose images stay until the program ends, and the checkpoints of a run on it. */
 static void prepare(void)
 {
-    const adcgs_scenes_options options = { .name = "tiny", .width = 8, .height = 8, .format = "ppm" };
-    adcgs_error error = { ADCGS_OK, "" };
+    const adcgs_scenes_options options = {.name = "tiny", .width = 8, .height = 8, .format = "ppm"};
+    adcgs_error error = {ADCGS_OK, ""};
     FUZZ_REQUIRE(mkdtemp(folder) && atexit(clean_up) == 0);
     FUZZ_REQUIRE(adcgs_scenes_write(folder, &options, NULL, NULL, NULL, &error) == ADCGS_OK);
     FUZZ_REQUIRE(adcgs_scene_open(&scene, folder, NULL, &error) == ADCGS_OK);
@@ -105,10 +105,18 @@ static size_t change(uint8_t *copy, size_t size, const uint8_t *data, size_t byt
             break;
         const size_t at = place % (reach - 8);
         switch (data[0] >> 1 & 3) {
-        case 0: copy[at] = data[4]; break;
-        case 1: memcpy(copy + at, data + 4, 4); break;
-        case 2: memset(copy + at, data[4], 8); break;
-        default: size = data[5] == 0 ? at : size; break; /* truncate */
+        case 0:
+            copy[at] = data[4];
+            break;
+        case 1:
+            memcpy(copy + at, data + 4, 4);
+            break;
+        case 2:
+            memset(copy + at, data[4], 8);
+            break;
+        default:
+            size = data[5] == 0 ? at : size;
+            break; /* truncate */
         }
     }
     return size;
@@ -122,7 +130,7 @@ static void check(adcgs_status status, const adcgs_error *error)
 /** Runs some iterations; at the end of training also writes a stream. */
 static void go_on(adcgs_trainer *t)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream;
     int stopped = 1;
     uint32_t stop = t->iteration < ITERATIONS - GOES_ON ? t->iteration + GOES_ON : ITERATIONS;
@@ -148,7 +156,7 @@ static adcgs_status load_file(adcgs_trainer *t, const uint8_t *data, size_t size
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     if (!scene)
         prepare();
     if (!size)

@@ -16,7 +16,7 @@
 #define MEMORY_MOST ((uint64_t)256 << 20)
 #define HEAVY 1e9 /* products of the networks for an image; above this a model is rendered only at one time */
 
-const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/decode", NULL };
+const char *const adcgs_fuzz_seeds[] = {"conformance/vectors", "tests/fuzz/regressions/decode", NULL};
 
 /** A source that returns at most step bytes at a time. */
 typedef struct dripping {
@@ -37,8 +37,8 @@ static int64_t drip(void *user, void *buffer, size_t bytes)
 
 static adcgs_camera any_camera(const adcgs_decoder *d, int stored)
 {
-    adcgs_camera camera = { .fx = 20, .fy = 20, .cx = 10, .cy = 6, .near_plane = 0.01,
-                            .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3 } };
+    adcgs_camera camera =
+        {.fx = 20, .fy = 20, .cx = 10, .cy = 6, .near_plane = 0.01, .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3}};
     if (stored)
         (void)adcgs_get_camera(d, 0, &camera, NULL);
     camera.width = WIDTH;
@@ -73,7 +73,7 @@ static uint32_t ask(adcgs_decoder *d, int stored_camera)
     for (int i = 0; i < moments; i++) {
         const double time = i == 2 ? middle_of(&info) : i ? info.time_end : info.time_start;
         FUZZ_REQUIRE(adcgs_set_tiers(d, i % 2, NULL) == ADCGS_OK);
-        adcgs_frame frame = { WIDTH, HEIGHT, rgb };
+        adcgs_frame frame = {WIDTH, HEIGHT, rgb};
         if (adcgs_get_primitives(d, time, &primitives, NULL) != ADCGS_OK ||
             adcgs_render(d, &camera, time, &frame, NULL) != ADCGS_OK)
             continue;
@@ -88,9 +88,9 @@ static uint32_t ask(adcgs_decoder *d, int stored_camera)
 
 static adcgs_status decode(const uint8_t *data, size_t size, const adcgs_config *config, size_t step, int stored, uint32_t *crc)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_decoder *d = NULL;
-    dripping source = { data, size, step };
+    dripping source = {data, size, step};
     const adcgs_status status = adcgs_open_stream(&d, drip, &source, config, &error);
     FUZZ_REQUIRE((status == ADCGS_OK) == (d != NULL));
     FUZZ_REQUIRE(status == ADCGS_OK || (error.status == status && error.text[0] && !strchr(error.text, '\n')));
@@ -119,7 +119,7 @@ static void compare_frames(adcgs_decoder *a, adcgs_decoder *b, double time)
 {
     float rgb[2][WIDTH * HEIGHT * 3];
     const adcgs_camera camera = any_camera(a, 0);
-    adcgs_frame one = { WIDTH, HEIGHT, rgb[0] }, other = { WIDTH, HEIGHT, rgb[1] };
+    adcgs_frame one = {WIDTH, HEIGHT, rgb[0]}, other = {WIDTH, HEIGHT, rgb[1]};
     const adcgs_status status = adcgs_render(a, &camera, time, &one, NULL);
     FUZZ_REQUIRE(adcgs_render(b, &camera, time, &other, NULL) == status || status != ADCGS_OK);
     FUZZ_REQUIRE(status != ADCGS_OK || memcmp(rgb[0], rgb[1], sizeof rgb[0]) == 0);
@@ -130,9 +130,9 @@ static void compare_frames(adcgs_decoder *a, adcgs_decoder *b, double time)
  */
 static void seek(const uint8_t *data, size_t size, const adcgs_config *config)
 {
-    anywhere source = { data, size };
+    anywhere source = {data, size};
     adcgs_decoder *d = NULL, *whole = NULL;
-    adcgs_info info, all = { .truncated = 1 };
+    adcgs_info info, all = {.truncated = 1};
     if (adcgs_open_at(&d, read_anywhere, &source, size, config, NULL) != ADCGS_OK)
         return;
     FUZZ_REQUIRE(adcgs_get_info(d, &info, sizeof info, NULL) == ADCGS_OK && info.segments >= 1);
@@ -202,7 +202,7 @@ static void conceal(const uint8_t *data, size_t size, const adcgs_config *config
 {
     adcgs_config how = *config;
     adcgs_decoder *d = NULL, *whole = NULL;
-    adcgs_info info, all = { .truncated = 1 };
+    adcgs_info info, all = {.truncated = 1};
     how.conceal = 1;
     if (adcgs_open_memory(&whole, data, size, config, NULL) == ADCGS_OK)
         FUZZ_REQUIRE(adcgs_get_info(whole, &all, sizeof all, NULL) == ADCGS_OK);
@@ -236,7 +236,7 @@ static void tame_level(uint8_t *stream, size_t size, int level)
 
 static void decode_both(uint8_t *stream, size_t size, const uint8_t choice[8])
 {
-    static const size_t steps[] = { SIZE_MAX, 1, 7, 4096 };
+    static const size_t steps[] = {SIZE_MAX, 1, 7, 4096};
     uint32_t crc = 0, again = 0;
     adcgs_config config;
     adcgs_config_init(&config, sizeof config);
@@ -262,7 +262,7 @@ static void decode_both(uint8_t *stream, size_t size, const uint8_t choice[8])
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    uint8_t choice[8] = { 0 };
+    uint8_t choice[8] = {0};
     const size_t n = ADCGS_MIN(size, sizeof choice);
     if (n > 0)
         memcpy(choice, data + size - n, n);

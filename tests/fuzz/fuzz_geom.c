@@ -8,11 +8,11 @@
 #include "geom/geom.h"
 
 #define ANCHORS_MAX 20000U
-#define FIXED_BYTES 21 /* elements before the positions */
-#define COUNT_BYTES 4  /* these alone in predicted segments, which use the grid of the previous segment */
+#define FIXED_BYTES 21  /* elements before the positions */
+#define COUNT_BYTES 4   /* these alone in predicted segments, which use the grid of the previous segment */
 #define PREDICTED_AT 20 /* offset in SEGM */
 
-const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/geom", NULL };
+const char *const adcgs_fuzz_seeds[] = {"conformance/vectors", "tests/fuzz/regressions/geom", NULL};
 
 static void check_positions(const uint32_t *voxels, uint32_t n, int depth)
 {

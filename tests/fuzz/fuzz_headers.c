@@ -12,14 +12,14 @@
 
 #define BEFORE 60U /* anchors of the segment before a predicted one */
 
-const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/headers", NULL };
+const char *const adcgs_fuzz_seeds[] = {"conformance/vectors", "tests/fuzz/regressions/headers", NULL};
 
 typedef adcgs_status (*part_parse)(adcgs_parse *p, adcgs_stream *stream, adcgs_memory *memory);
 typedef adcgs_status (*part_write)(adcgs_buffer *out, const adcgs_stream *stream, adcgs_error *error);
 
 static adcgs_parse parse_of(const uint8_t *data, size_t size)
 {
-    adcgs_parse p = { .chunk = "part" };
+    adcgs_parse p = {.chunk = "part"};
     adcgs_reader_init(&p.r, data, size);
     return p;
 }
@@ -29,7 +29,7 @@ static void try_extras(const uint8_t *data, size_t size, part_parse parse, part_
 {
     adcgs_stream first, second;
     adcgs_buffer a, b;
-    adcgs_memory memory = { .limit = 0 };
+    adcgs_memory memory = {.limit = 0};
     adcgs_stream_init(&first);
     adcgs_stream_init(&second);
     adcgs_buffer_init(&a);
@@ -69,7 +69,7 @@ static int try_head(const uint8_t *data, size_t size, adcgs_stream *stream)
 
 static void try_segm(const uint8_t *data, size_t size, const adcgs_stream *stream)
 {
-    adcgs_model model = { .params = stream->params };
+    adcgs_model model = {.params = stream->params};
     adcgs_role_ids ids;
     int64_t ticks[3];
     adcgs_buffer out;
@@ -78,7 +78,7 @@ static void try_segm(const uint8_t *data, size_t size, const adcgs_stream *strea
         return;
     adcgs_buffer_init(&out);
     if (adcgs_segm_write(&out, stream, &model, &ids, NULL) == ADCGS_OK) { /* may fail: huge time bases lose ticks */
-        adcgs_model again = { .params = stream->params };
+        adcgs_model again = {.params = stream->params};
         adcgs_role_ids same;
         p = parse_of(out.data, out.size);
         FUZZ_REQUIRE(adcgs_segm_parse(&p, stream, &again, &same, ticks) == ADCGS_OK);
@@ -98,9 +98,9 @@ static void require_same(const adcgs_inter *a, const adcgs_inter *b, const adcgs
 /** KEEP, the data of inter-segment prediction: equal when coded and read again, possibly in other bytes. */
 static void try_keep(const uint8_t *data, size_t size, const adcgs_model *before)
 {
-    adcgs_inter kept = { .n = 0 }, again = { .n = 0 };
-    adcgs_cost left = { UINT64_MAX, UINT64_MAX };
-    adcgs_memory memory = { .limit = 0 };
+    adcgs_inter kept = {.n = 0}, again = {.n = 0};
+    adcgs_cost left = {UINT64_MAX, UINT64_MAX};
+    adcgs_memory memory = {.limit = 0};
     adcgs_buffer out;
     adcgs_parse p = parse_of(data, size);
     adcgs_buffer_init(&out);
@@ -120,7 +120,7 @@ static void try_keep(const uint8_t *data, size_t size, const adcgs_model *before
 static void make_before(adcgs_model *before, const adcgs_params *params)
 {
     adcgs_model_clear(before, NULL);
-    *before = (adcgs_model){ .params = *params, .n = BEFORE, .depth = 2 };
+    *before = (adcgs_model){.params = *params, .n = BEFORE, .depth = 2};
     FUZZ_REQUIRE(adcgs_model_alloc(before, NULL, NULL) == ADCGS_OK);
     for (uint32_t i = 0; i < BEFORE; i++) {
         before->is_static[i] = params->time_rows > 0 && i % 3 == 0;
@@ -152,7 +152,7 @@ static void try_elements(const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    adcgs_model before = { .n = 0 };
+    adcgs_model before = {.n = 0};
     adcgs_stream stream, second; /* second: the same with a previous segment, for predicted parts */
     adcgs_found_chunk c;
     int has_head = 0;

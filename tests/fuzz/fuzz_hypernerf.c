@@ -11,9 +11,9 @@
 
 #include <sys/stat.h>
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/hypernerf", "tests/fuzz/regressions/hypernerf", NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/hypernerf", "tests/fuzz/regressions/hypernerf", NULL};
 
-static const char *const folders[] = { "camera", "rgb", "rgb/1x" };
+static const char *const folders[] = {"camera", "rgb", "rgb/1x"};
 static const char *const files[] = {
     "dataset.json", "metadata.json", "scene.json", "camera/a.json", "points.npy", "rgb/1x/a.png",
 };
@@ -21,7 +21,7 @@ static const char *const files[] = {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char folder[] = "/tmp/adcgs-fuzz-XXXXXX", path[64];
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_scene *scene = calloc(1, sizeof *scene);
     FUZZ_REQUIRE(scene && mkdtemp(folder) && (scene->directory = strdup(folder)));
     for (size_t i = 0; i < ADCGS_COUNTOF(folders); i++) {

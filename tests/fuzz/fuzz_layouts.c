@@ -14,7 +14,7 @@
 
 #include <sys/stat.h>
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/layouts", "tests/fuzz/regressions/layouts", NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/layouts", "tests/fuzz/regressions/layouts", NULL};
 
 #define PICTURE "P5\n24 16\n255\n" /* followed by as many pixels, all black */
 
@@ -25,16 +25,16 @@ static const struct kind {
     const char *files[5];
     int n;
 } kinds[] = {
-    { 'L', "", { "poses_bounds.npy" }, 1 },
-    { 'B', "", { "cameras.bin", "images.bin", "points3D.bin" }, 3 },
-    { 'T', "", { "cameras.txt", "images.txt", "points3D.txt" }, 3 },
-    { 'S', "/s.json", { "s.json" }, 1 },
-    { 'G', "/s.ply", { "s.ply" }, 1 },
-    { 'M', "", { "cameras.txt", "images.txt", "sparse/1/cameras.txt", "sparse/1/images.txt", "sparse/1/points3D.txt" }, 5 },
-    { 'P', "", { "train_meta.json", "test_meta.json", "init_pt_cld.npz" }, 3 },
+    {'L', "", {"poses_bounds.npy"}, 1},
+    {'B', "", {"cameras.bin", "images.bin", "points3D.bin"}, 3},
+    {'T', "", {"cameras.txt", "images.txt", "points3D.txt"}, 3},
+    {'S', "/s.json", {"s.json"}, 1},
+    {'G', "/s.ply", {"s.ply"}, 1},
+    {'M', "", {"cameras.txt", "images.txt", "sparse/1/cameras.txt", "sparse/1/images.txt", "sparse/1/points3D.txt"}, 5},
+    {'P', "", {"train_meta.json", "test_meta.json", "init_pt_cld.npz"}, 3},
 };
-static const char *const pictures[] = { "images/0.ppm", "images/1.ppm", "ims/0.ppm", "ims/1.ppm" };
-static const char *const folders[] = { "images", "ims", "sparse", "sparse/1" };
+static const char *const pictures[] = {"images/0.ppm", "images/1.ppm", "ims/0.ppm", "ims/1.ppm"};
+static const char *const folders[] = {"images", "ims", "sparse", "sparse/1"};
 
 static void put_files(const char *folder, const struct kind *kind, const uint8_t *data, size_t size)
 {
@@ -70,7 +70,7 @@ static void remove_files(const char *folder, const struct kind *kind)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char folder[] = "/tmp/adcgs-fuzz-XXXXXX", path[96];
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_scene *scene;
     const struct kind *kind = &kinds[0];
     for (size_t i = 0; size && i < ADCGS_COUNTOF(kinds); i++)

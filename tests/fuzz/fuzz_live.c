@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/live", "tests/fuzz/regressions/live", NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/live", "tests/fuzz/regressions/live", NULL};
 
 enum { FRAMES_MOST = 4096, STRETCHES = 4 };
 
@@ -57,13 +57,13 @@ static void remove_all(const adcgs_live_camera *camera, const adcgs_live_limits 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char folder[] = "/tmp/adcgs-fuzz-XXXXXX", video[64];
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_live_camera camera;
-    adcgs_live_limits limits = { .until = HUGE_VAL, .given_up = -HUGE_VAL, .folder = folder, .stretch = stretch_of };
+    adcgs_live_limits limits = {.until = HUGE_VAL, .given_up = -HUGE_VAL, .folder = folder, .stretch = stretch_of};
     const size_t bytes = size - (size > 0), first = size ? bytes * *data / 256 : 0;
     FUZZ_REQUIRE(mkdtemp(folder));
     snprintf(video, sizeof video, "%s/v.y4m", folder);
-    const adcgs_source_camera source = { .name = "a", .video = video };
+    const adcgs_source_camera source = {.name = "a", .video = video};
     data += size > 0;
     write_outside_file(video, data, first);
     adcgs_live_camera_init(&camera, &source, 0);

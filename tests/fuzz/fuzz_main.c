@@ -35,7 +35,7 @@ static uint32_t draw(uint64_t *state, uint32_t n)
 /** One change, determined by the bytes themselves. */
 __attribute__((weak)) size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t max)
 {
-    static const uint8_t telling[] = { 0, 1, 2, 127, 128, 129, 254, 255 };
+    static const uint8_t telling[] = {0, 1, 2, 127, 128, 129, 254, 255};
     uint64_t state = adcgs_crc32c((uint32_t)size, data, size);
     const size_t at = size ? draw(&state, (uint32_t)size) : 0, n = 1 + draw(&state, 8);
     switch (size ? draw(&state, 5) : 4) {
@@ -130,7 +130,7 @@ static void replay_path(replay *r, const char *path)
 __attribute__((weak)) int main(int argc, char **argv)
 {
     const char *top = getenv("srcdir"), *rounds = getenv("ADCGS_FUZZ_ROUNDS");
-    replay r = { .rounds = rounds ? atoi(rounds) : ROUNDS };
+    replay r = {.rounds = rounds ? atoi(rounds) : ROUNDS};
     for (int i = 1; i < argc; i++)
         replay_path(&r, argv[i]);
     for (size_t i = 0; argc == 1 && adcgs_fuzz_seeds[i]; i++) {

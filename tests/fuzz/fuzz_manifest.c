@@ -6,12 +6,12 @@
 
 #include "conform/conform.h"
 
-const char *const adcgs_fuzz_seeds[] = { "conformance/manifest.json", "tests/fuzz/regressions/manifest", NULL };
+const char *const adcgs_fuzz_seeds[] = {"conformance/manifest.json", "tests/fuzz/regressions/manifest", NULL};
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char folder[] = "/tmp/adcgs-fuzz-XXXXXX", path[64];
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_manifest manifest;
     FUZZ_REQUIRE(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/manifest.json", folder);

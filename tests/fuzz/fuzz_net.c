@@ -13,7 +13,7 @@
 
 #define WEIGHTS_MAX 200000U
 
-const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/net", NULL };
+const char *const adcgs_fuzz_seeds[] = {"conformance/vectors", "tests/fuzz/regressions/net", NULL};
 
 /** All outputs of a network at a CPU level, for inputs over the whole range. */
 static uint32_t evaluate(const adcgs_net *net, adcgs_cpu_level cpu)
@@ -41,7 +41,7 @@ static uint32_t evaluate(const adcgs_net *net, adcgs_cpu_level cpu)
 
 static void write_again(const adcgs_net_table *table, const adcgs_params *params, const adcgs_level *limits)
 {
-    adcgs_net_table again = { 0 };
+    adcgs_net_table again = {0};
     adcgs_buffer out;
     adcgs_buffer_init(&out);
     for (uint32_t first = 0; first < table->n; first += ADCGS_ROLES) {
@@ -51,8 +51,8 @@ static void write_again(const adcgs_net_table *table, const adcgs_params *params
             nets[i] = &table->nets[first + i];
         out.size = 0;
         FUZZ_REQUIRE(adcgs_netw_write(&out, nets, n, first, NULL) == ADCGS_OK);
-        adcgs_cost left = { UINT64_MAX, UINT64_MAX };
-        adcgs_parse p = { .chunk = "NETW" };
+        adcgs_cost left = {UINT64_MAX, UINT64_MAX};
+        adcgs_parse p = {.chunk = "NETW"};
         adcgs_reader_init(&p.r, out.data, out.size);
         FUZZ_REQUIRE(adcgs_netw_parse(&p, params, limits, &left, &again) == ADCGS_OK);
     }
@@ -80,14 +80,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     adcgs_level limits = *adcgs_level_get(1);
     adcgs_stream stream;
     adcgs_syn_head head;
-    adcgs_net_table table = { 0 };
+    adcgs_net_table table = {0};
     adcgs_found_chunk c;
-    adcgs_cost left = { UINT64_MAX, UINT64_MAX };
+    adcgs_cost left = {UINT64_MAX, UINT64_MAX};
     int has_head = 0;
     limits.weights = WEIGHTS_MAX;
     adcgs_stream_init(&stream);
     for (size_t pos = ADCGS_SIGNATURE_BYTES; adcgs_next_chunk(data, size, &pos, &c);) {
-        adcgs_parse p = { .chunk = "chunk" };
+        adcgs_parse p = {.chunk = "chunk"};
         adcgs_reader_init(&p.r, data + c.payload, c.length);
         if (c.type == ADCGS_TYPE_HEAD && !has_head)
             has_head = adcgs_head_parse(&p, &head, &stream) == ADCGS_OK;

@@ -10,7 +10,7 @@
 #include "encode/live_stream.h"
 #include "encode/resume_reader.h"
 
-const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/past", NULL };
+const char *const adcgs_fuzz_seeds[] = {"conformance/vectors", "tests/fuzz/regressions/past", NULL};
 
 enum { ANCHORS = 4096 };
 
@@ -22,9 +22,9 @@ static void check(adcgs_status status, const adcgs_error *error)
 /** Resumes as adcgs-enc does: the last segment is held back. */
 static void go_on(adcgs_resume_reader *past)
 {
-    adcgs_encode_live live = { .max_anchors = 0 };
-    adcgs_model model, last = { .n = 0 };
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_encode_live live = {.max_anchors = 0};
+    adcgs_model model, last = {.n = 0};
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_status status = ADCGS_OK;
     uint32_t n = 0;
     while (status == ADCGS_OK) {
@@ -34,8 +34,8 @@ static void go_on(adcgs_resume_reader *past)
         check(status, &error);
         if (status != ADCGS_OK || !model.n)
             break;
-        status = n++ ? adcgs_encode_live_add(&live, &last, &bytes, &error) :
-                       adcgs_encode_live_continue(&live, &past->stream, ANCHORS, ADCGS_CPU_SCALAR, NULL, &error);
+        status = n++ ? adcgs_encode_live_add(&live, &last, &bytes, &error)
+                     : adcgs_encode_live_continue(&live, &past->stream, ANCHORS, ADCGS_CPU_SCALAR, NULL, &error);
         check(status, &error);
         FUZZ_REQUIRE(status != ADCGS_ERR_INTERNAL); /* else it differs from the segment that was read */
         adcgs_model_clear(&last, NULL);
@@ -51,7 +51,7 @@ static void go_on(adcgs_resume_reader *past)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char path[] = "/tmp/adcgs-fuzz-XXXXXX";
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_resume_reader past;
     const int file = mkstemp(path);
     FUZZ_REQUIRE(file >= 0 && write(file, data, size) == (ssize_t)size && close(file) == 0);

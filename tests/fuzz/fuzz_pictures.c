@@ -12,8 +12,8 @@
 
 #include <math.h>
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/pictures", "tests/fuzz/seeds/ply", "tests/fuzz/regressions/pictures",
-                                         NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/pictures", "tests/fuzz/seeds/ply", "tests/fuzz/regressions/pictures",
+                                        NULL};
 
 enum { PIXELS_MOST = 1 << 20 };
 
@@ -24,7 +24,7 @@ static void check(adcgs_status status, const adcgs_error *error)
 
 static void read_image(const char *path)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_image image;
     int width = 0, height = 0, channels = 0;
     adcgs_status status = adcgs_image_probe(&width, &height, &channels, path, &error);
@@ -45,7 +45,7 @@ static void read_image(const char *path)
 
 static void read_points(const char *path)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_points points;
     const adcgs_status status = adcgs_points_read(&points, path, &error);
     check(status, &error);

@@ -6,13 +6,13 @@
 
 #include "encode/plan.h"
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/plan", NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/plan", NULL};
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char folder[] = "/tmp/adcgs-fuzz-XXXXXX", path[64];
-    adcgs_error error = { ADCGS_OK, "" };
-    adcgs_plan plan = { .dataset = 0 };
+    adcgs_error error = {ADCGS_OK, ""};
+    adcgs_plan plan = {.dataset = 0};
     FUZZ_REQUIRE(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/plan.json", folder);
     write_outside_file(path, data, size);

@@ -4,12 +4,12 @@
 
 #include "io/points.h"
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/ply", "tests/fuzz/regressions/ply", NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/ply", "tests/fuzz/regressions/ply", NULL};
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    adcgs_points points = { 0 };
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_points points = {0};
+    adcgs_error error = {ADCGS_OK, ""};
     uint8_t *text = fuzz_file(data, size);
     const adcgs_status status = adcgs_ply_parse(&points, text, size, "fuzz.ply", &error);
     FUZZ_REQUIRE(status == ADCGS_OK || (error.status == status && error.text[0]));

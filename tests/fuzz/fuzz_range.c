@@ -10,7 +10,7 @@
 #define PROGRAM 12
 #define OPERATIONS 2000
 
-const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/range", NULL };
+const char *const adcgs_fuzz_seeds[] = {"conformance/vectors", "tests/fuzz/regressions/range", NULL};
 
 /** Encoder and decoder of the same program. */
 typedef struct coder {
@@ -57,13 +57,13 @@ static void run(coder *c, int32_t *values)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    int32_t values[OPERATIONS] = { 0 }, again[OPERATIONS] = { 0 };
+    int32_t values[OPERATIONS] = {0}, again[OPERATIONS] = {0};
     adcgs_range_dec dec;
     adcgs_range_enc enc;
     adcgs_buffer out;
     if (size < PROGRAM)
         return 0;
-    coder c = { .program = data, .dec = &dec };
+    coder c = {.program = data, .dec = &dec};
     adcgs_range_dec_init(&dec, data + PROGRAM, size - PROGRAM);
     run(&c, values);
     (void)adcgs_range_dec_finish(&dec, NULL);
@@ -71,7 +71,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         return 0;
     adcgs_buffer_init(&out);
     adcgs_range_enc_init(&enc, &out);
-    coder back = { .program = data, .enc = &enc };
+    coder back = {.program = data, .enc = &enc};
     run(&back, values);
     adcgs_range_enc_finish(&enc);
     adcgs_range_dec_init(&dec, out.data, out.size);

@@ -10,7 +10,7 @@
 #include "base/thread_pool.h"
 #include "stream/input.h"
 
-const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/roundtrip", NULL };
+const char *const adcgs_fuzz_seeds[] = {"conformance/vectors", "tests/fuzz/regressions/roundtrip", NULL};
 
 static uint8_t in_range(uint8_t byte, int lo, int hi)
 {
@@ -40,10 +40,10 @@ static adcgs_params params_of(const uint8_t b[10])
 
 static void read_back(const adcgs_buffer *bytes, const adcgs_stream *stream, adcgs_pool *pool)
 {
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .pool = pool, .strict_end = 1 };
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR, .pool = pool, .strict_end = 1};
     adcgs_stream back;
     adcgs_buffer again;
-    adcgs_span s = { .next = bytes->data, .left = bytes->size };
+    adcgs_span s = {.next = bytes->data, .left = bytes->size};
     FUZZ_REQUIRE(adcgs_stream_read(&back, adcgs_span_read, &s, &options, NULL, NULL, NULL) == ADCGS_OK);
     FUZZ_REQUIRE(back.n_segments == stream->n_segments && back.n_cameras == stream->n_cameras && back.n_meta == stream->n_meta);
     for (uint32_t i = 0; i < back.n_segments; i++)
@@ -57,7 +57,7 @@ static void read_back(const adcgs_buffer *bytes, const adcgs_stream *stream, adc
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    uint8_t choice[16] = { 0 };
+    uint8_t choice[16] = {0};
     uint64_t seed = (uint64_t)adcgs_crc32c(0, data, size) << 32 | size;
     adcgs_stream stream;
     adcgs_buffer bytes;

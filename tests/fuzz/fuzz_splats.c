@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/splats", "tests/fuzz/seeds/ply", NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/splats", "tests/fuzz/seeds/ply", NULL};
 
 /** Accepted splats fulfil the promises of the header. */
 static void check(const adcgs_splats *s)
@@ -28,7 +28,7 @@ static void check(const adcgs_splats *s)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     adcgs_splats splats;
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     uint8_t *text = fuzz_file(data, size);
     const adcgs_status status = adcgs_splats_parse(&splats, text, size, "fuzz.ply", &error);
     FUZZ_REQUIRE(status == ADCGS_OK || (error.status == status && error.text[0] && !strchr(error.text, '\n')));

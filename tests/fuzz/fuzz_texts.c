@@ -25,18 +25,18 @@
 #include <math.h>
 #include <sys/stat.h>
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/texts", "tests/fuzz/regressions/texts", NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/texts", "tests/fuzz/regressions/texts", NULL};
 
 typedef adcgs_status reader(const char *path, adcgs_error *error);
 
 static adcgs_status read_camera_path(const char *path, adcgs_error *error)
 {
-    const adcgs_info info = { .time_start = 0, .time_end = 2, .frame_rate = 10 };
-    const adcgs_camera like = { .width = 32, .height = 24, .fx = 30, .fy = 30, .cx = 16, .cy = 12, .near_plane = 0.01 };
-    const adcgs_camera_path_request requests[] = { { .camera = path }, { .camera = path, .size = { 40, 30 } } };
+    const adcgs_info info = {.time_start = 0, .time_end = 2, .frame_rate = 10};
+    const adcgs_camera like = {.width = 32, .height = 24, .fx = 30, .fy = 30, .cx = 16, .cy = 12, .near_plane = 0.01};
+    const adcgs_camera_path_request requests[] = {{.camera = path}, {.camera = path, .size = {40, 30}}};
     adcgs_status status = ADCGS_OK;
     for (size_t i = 0; i < ADCGS_COUNTOF(requests); i++) {
-        adcgs_camera_path frames = { .n = 0 };
+        adcgs_camera_path frames = {.n = 0};
         status = adcgs_camera_path_read(&frames, &info, &requests[i], &like, error);
         for (int j = 0; status == ADCGS_OK && j < frames.n; j++) {
             FUZZ_REQUIRE(isfinite(frames.frame[j].time) && frames.frame[j].camera.width > 0 && frames.frame[j].camera.height > 0);
@@ -60,7 +60,7 @@ static adcgs_status read_sources(const char *path, adcgs_error *error)
 
 static adcgs_status read_script(const char *path, adcgs_error *error)
 {
-    adcgs_script script = { .n = 0 };
+    adcgs_script script = {.n = 0};
     const adcgs_status status = adcgs_script_read(&script, path, error);
     adcgs_script_clear(&script);
     return status;
@@ -68,7 +68,7 @@ static adcgs_status read_script(const char *path, adcgs_error *error)
 
 static adcgs_status read_requests(const char *path, adcgs_error *error)
 {
-    adcgs_requests requests = { .n = 0 };
+    adcgs_requests requests = {.n = 0};
     const adcgs_status status = adcgs_requests_read(&requests, path, error);
     for (int i = 0; status == ADCGS_OK && i < requests.n; i++)
         FUZZ_REQUIRE(requests.request[i].kind != ADCGS_REQUEST_FRAME ||
@@ -89,7 +89,7 @@ static adcgs_status read_curves(const char *path, int is_table, adcgs_error *err
         status = adcgs_sweep_add_tables(plan, text, error);
     } else {
         snprintf(text, sizeof text, "%.*s", (int)(strrchr(path, '/') - path), path);
-        const adcgs_sweep sweep = { .scene = "data/robot", .directory = "/tmp/adcgs-none", .against = text };
+        const adcgs_sweep sweep = {.scene = "data/robot", .directory = "/tmp/adcgs-none", .against = text};
         status = adcgs_sweep_add_against(plan, &sweep, error);
     }
     FUZZ_REQUIRE(status != ADCGS_OK || (plan->n_curves == 1 && plan->curve[0].n > 0));
@@ -115,9 +115,9 @@ static const struct kind {
     const char *name;
     reader *read;
 } kinds[] = {
-    { 'C', "path.json", read_camera_path }, { 'H', "path.chan", read_camera_path }, { 'U', "path.usda", read_camera_path },
-    { 'L', "scene.json", read_sources }, { 'P', "script", read_script },
-    { 'R', "requests", read_requests },     { 'A', "table.csv", read_table },    { 'J', "sweep.json", read_earlier },
+    {'C', "path.json", read_camera_path}, {'H', "path.chan", read_camera_path}, {'U', "path.usda", read_camera_path},
+    {'L', "scene.json", read_sources},    {'P', "script", read_script},         {'R', "requests", read_requests},
+    {'A', "table.csv", read_table},       {'J', "sweep.json", read_earlier},
 };
 
 static void check(adcgs_status status, const adcgs_error *error)
@@ -127,8 +127,8 @@ static void check(adcgs_status status, const adcgs_error *error)
 
 static void parse_grid(const char *text)
 {
-    adcgs_error error = { ADCGS_OK, "" };
-    adcgs_sweep_grid grid = { .n = 0 };
+    adcgs_error error = {ADCGS_OK, ""};
+    adcgs_sweep_grid grid = {.n = 0};
     const adcgs_status status = adcgs_sweep_grid_parse(&grid, text, &error);
     check(status, &error);
     for (int i = 0; status == ADCGS_OK && i < ADCGS_MIN(adcgs_sweep_grid_count(&grid), 16); i++) {
@@ -141,8 +141,8 @@ static void parse_grid(const char *text)
 
 static void parse_frames(const char *text)
 {
-    adcgs_error error = { ADCGS_OK, "" };
-    adcgs_frame_range range = { 0, 0, 0 };
+    adcgs_error error = {ADCGS_OK, ""};
+    adcgs_frame_range range = {0, 0, 0};
     int64_t count;
     const adcgs_status status = adcgs_frames_parse(&range, text, &error);
     check(status, &error);
@@ -159,7 +159,7 @@ static void parse_rate(const char *text)
 
 static void parse_shape(const char *text)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_y4m_shape shape;
     const adcgs_status status = adcgs_y4m_shape_parse(&shape, text, "fuzz.y4m", &error);
     check(status, &error);
@@ -168,7 +168,7 @@ static void parse_shape(const char *text)
 
 static void parse_settings(const char *text)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_train_config config;
     FUZZ_REQUIRE(adcgs_train_preset(&config, "draft", &error) == ADCGS_OK);
     check(adcgs_train_set(&config, text, &error), &error);
@@ -176,7 +176,7 @@ static void parse_settings(const char *text)
 
 static void parse_spoil(const char *text)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_spoil spoil;
     const adcgs_status status = adcgs_spoil_parse(&spoil, text, &error);
     check(status, &error);
@@ -186,7 +186,7 @@ static void parse_spoil(const char *text)
 
 static void parse_budget(const char *text)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_budget budget;
     const adcgs_status status = adcgs_budget_parse(&budget, text, &error);
     check(status, &error);
@@ -196,7 +196,7 @@ static void parse_budget(const char *text)
 /** A parsed range is inside the file; a text that is returned to the server is one line. */
 static void parse_head(const char *text)
 {
-    adcgs_http_head head = { .first = ADCGS_HTTP_UNKNOWN, .size = ADCGS_HTTP_UNKNOWN };
+    adcgs_http_head head = {.first = ADCGS_HTTP_UNKNOWN, .size = ADCGS_HTTP_UNKNOWN};
     for (const char *end; *text; text = end) {
         end = strchr(text, '\n');
         end = end ? end + 1 : text + strlen(text);
@@ -212,14 +212,14 @@ static const struct {
     char letter;
     void (*parse)(const char *text);
 } texts[] = {
-    { 'G', parse_grid },     { 'F', parse_frames }, { 'N', parse_rate },   { 'Y', parse_shape },
-    { 'S', parse_settings }, { 'O', parse_spoil },  { 'B', parse_budget }, { 'H', parse_head },
+    {'G', parse_grid},     {'F', parse_frames}, {'N', parse_rate},   {'Y', parse_shape},
+    {'S', parse_settings}, {'O', parse_spoil},  {'B', parse_budget}, {'H', parse_head},
 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char folder[] = "/tmp/adcgs-fuzz-XXXXXX", path[64];
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     const char letter = size ? (char)*data : 'C';
     const size_t bytes = size - (size > 0);
     uint8_t *text = fuzz_file(data + (size > 0), bytes);

@@ -9,13 +9,13 @@
 
 #define PICTURE "P5\n24 16\n255\n" /* followed by as many pixels, all black */
 
-const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/transforms", "tests/fuzz/regressions/transforms", NULL };
+const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/transforms", "tests/fuzz/regressions/transforms", NULL};
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char folder[] = "/tmp/adcgs-fuzz-XXXXXX", path[64], picture[64];
-    adcgs_error error = { ADCGS_OK, "" };
-    adcgs_transforms said = { 0 };
+    adcgs_error error = {ADCGS_OK, ""};
+    adcgs_transforms said = {0};
     adcgs_scene *scene = calloc(1, sizeof *scene);
     const adcgs_split split = (adcgs_split)(size % (ADCGS_SPLITS + 1));
     FUZZ_REQUIRE(scene && mkdtemp(folder));

@@ -8,10 +8,10 @@
 /** A chunk, possibly cut off. */
 typedef struct adcgs_found_chunk {
     uint32_t type;
-    size_t at;       /**< position of its header */
-    size_t payload;  /**< position of its payload */
-    size_t length;   /**< bytes of the payload, at most the rest of the stream */
-    int complete;    /**< the checksum after the payload is present */
+    size_t at;      /**< position of its header */
+    size_t payload; /**< position of its payload */
+    size_t length;  /**< bytes of the payload, at most the rest of the stream */
+    int complete;   /**< the checksum after the payload is present */
 } adcgs_found_chunk;
 
 /** Finds the chunk at *pos and moves *pos behind it; 0 if there is no header left. Start with ADCGS_SIGNATURE_BYTES. */

@@ -42,7 +42,7 @@ static inline uint32_t fixture_anchors(const fixture *f)
 static adcgs_decoder *open_with(const fixture *f, const adcgs_config *config)
 {
     adcgs_decoder *d = NULL;
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     if (adcgs_open_memory(&d, f->bytes.data, f->bytes.size, config, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     assert_non_null(d);
@@ -52,9 +52,14 @@ static adcgs_decoder *open_with(const fixture *f, const adcgs_config *config)
 /** A camera before the scene, which fills about half of the image. */
 #define FIXTURE_WIDTH 61
 #define FIXTURE_HEIGHT 47
-static const adcgs_camera fixture_camera = { .width = FIXTURE_WIDTH, .height = FIXTURE_HEIGHT, .fx = 60, .fy = 60, .cx = 30,
-                                             .cy = 23, .near_plane = 0.1,
-                                             .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0.75, 0, 0, 1, -9 } };
+static const adcgs_camera fixture_camera = {.width = FIXTURE_WIDTH,
+                                            .height = FIXTURE_HEIGHT,
+                                            .fx = 60,
+                                            .fy = 60,
+                                            .cx = 30,
+                                            .cy = 23,
+                                            .near_plane = 0.1,
+                                            .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0.75, 0, 0, 1, -9}};
 #define FIXTURE_PIXELS ((size_t)FIXTURE_WIDTH * FIXTURE_HEIGHT)
 
 #endif

@@ -16,7 +16,7 @@
 enum { RIG_WIDTH = 24, RIG_HEIGHT = 16, RIG_POINTS = 27 };
 #define RIG_FOCAL 20.0
 /** A user's own point: 1 2 3. */
-#define RIG_PLY                                                                                                          \
+#define RIG_PLY \
     "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n"
 
 /** Cameras 0, rig_moved, 2 * rig_moved, ... are elsewhere, much farther off, with nearer bounds. 0: no camera. */

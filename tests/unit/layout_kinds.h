@@ -10,10 +10,10 @@ enum { CAMERAS = 9, MOMENTS = 4 };
 /** A kind of scene, and the files of its test views: images or videos by number. */
 typedef struct layout {
     const char *name;
-    const char *scene;      /**< below the folder; "": the folder itself */
-    const char *tests;      /**< files of the test views, by a number; NULL: none */
-    int first, last, step;  /**< the numbers */
-    int period;             /**< cameras 0, period, 2 * period, ... are for testing; 0: none of the rig's */
+    const char *scene;     /**< below the folder; "": the folder itself */
+    const char *tests;     /**< files of the test views, by a number; NULL: none */
+    int first, last, step; /**< the numbers */
+    int period;            /**< cameras 0, period, 2 * period, ... are for testing; 0: none of the rig's */
     void (*put)(void);
     int videos;
 } layout;
@@ -52,8 +52,8 @@ static inline void put_transforms(const char *name, int first, int step)
     for (int i = first; i < CAMERAS; i += step) {
         double pose[12];
         rig_pose(i, pose);
-        at += (size_t)sprintf(text + at, "%s{\"file_path\":\"%d.ppm\",\"time\":%g,\"transform_matrix\":%s}",
-                              i > first ? "," : "", i, i / 8.0, json_opengl(pose));
+        at += (size_t)sprintf(text + at, "%s{\"file_path\":\"%d.ppm\",\"time\":%g,\"transform_matrix\":%s}", i > first ? "," : "",
+                              i, i / 8.0, json_opengl(pose));
     }
     sprintf(text + at, "]}");
     put_text(name, text);
@@ -87,7 +87,8 @@ static inline void put_hypernerf(void)
             sprintf(ids + strlen(ids), "%s\"%d\"", i > 1 ? "," : "", i);
         sprintf(times + strlen(times), "%s\"%d\":{\"warp_id\":%d}", i ? "," : "", i, i);
         snprintf(name, sizeof name, "camera/%d.json", i);
-        snprintf(text, sizeof text, "{\"orientation\":[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]],"
+        snprintf(text, sizeof text,
+                 "{\"orientation\":[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]],"
                  "\"position\":[%.17g,%.17g,%.17g],\"focal_length\":20,\"principal_point\":[12,8],\"image_size\":[24,16]}",
                  p[0], p[4], p[8], p[1], p[5], p[9], p[2], p[6], p[10], p[3], p[7], p[11]);
         put_text(name, text);
@@ -158,8 +159,10 @@ static inline void put_scene_file(void)
     for (int i = 0; i < CAMERAS; i++) {
         double pose[12];
         rig_pose(i, pose);
-        at += (size_t)sprintf(text + at, "%s{\"name\":\"%d\",\"camera_to_world\":%s,\"images\":\"cam%d/%%04d.ppm\","
-                              "\"split\":\"%s\"}", i ? "," : "", i, json_matrix(pose), i, i ? "train" : "test");
+        at += (size_t)sprintf(text + at,
+                              "%s{\"name\":\"%d\",\"camera_to_world\":%s,\"images\":\"cam%d/%%04d.ppm\","
+                              "\"split\":\"%s\"}",
+                              i ? "," : "", i, json_matrix(pose), i, i ? "train" : "test");
     }
     sprintf(text + at, "]}");
     put_text("scene.json", text);
@@ -179,8 +182,8 @@ static inline void put_splats_file(void)
     char *text = malloc(65536);
     assert_non_null(text);
     size_t at = (size_t)sprintf(text, "ply\nformat ascii 1.0\nelement vertex 125\n");
-    static const char *const names[] = {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2",
-                                        "rot_0", "rot_1", "rot_2", "rot_3"};
+    static const char *const names[] = {"x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
+                                        "scale_0", "scale_1", "scale_2", "rot_0",  "rot_1",  "rot_2",  "rot_3"};
     for (size_t i = 0; i < ADCGS_COUNTOF(names); i++)
         at += (size_t)sprintf(text + at, "property float %s\n", names[i]);
     at += (size_t)sprintf(text + at, "end_header\n");

@@ -50,7 +50,7 @@ void adcgs_random_params(adcgs_params *p, int moving, uint64_t *state)
 static adcgs_status fill_tensor(adcgs_tensor *t, uint32_t rows, uint32_t cols, int limit, int e, int mode, uint64_t *state,
                                 adcgs_error *error)
 {
-    *t = (adcgs_tensor){ .rows = rows, .cols = cols, .mode = (uint8_t)mode, .e = (uint8_t)e };
+    *t = (adcgs_tensor){.rows = rows, .cols = cols, .mode = (uint8_t)mode, .e = (uint8_t)e};
     t->m = adcgs_alloc(NULL, (size_t)rows * cols, sizeof *t->m, error);
     if (!t->m)
         return ADCGS_ERR_MEMORY;
@@ -67,7 +67,7 @@ static adcgs_status random_net(adcgs_net *net, const adcgs_params *params, int r
     adcgs_role_shape(params, role, &n_in, &n_out);
     const int e24 = role < ADCGS_ROLE_PREDICTION, prior = adcgs_role_is_prior(role), table = role == ADCGS_ROLE_TIME;
     const int limit = e24 ? 60 : 400;
-    *net = (adcgs_net){ .present = 1, .role = (uint8_t)role };
+    *net = (adcgs_net){.present = 1, .role = (uint8_t)role};
     net->n_layers = (uint8_t)(table || n_in == 0 ? 1 : draw(state, 1, 3));
     net->in_shift = (uint8_t)(e24 ? draw(state, 0, 3) : 0);
     net->sigma_shift = (uint8_t)(prior ? draw(state, 6, 9) : 0);
@@ -286,9 +286,9 @@ static void random_modes(adcgs_inter *kept, const adcgs_model *before, uint64_t 
 {
     const int dropped_most = draw(state, 0, 99); /* hundredths */
     for (uint32_t i = 0; i < before->n; i++) {
-        kept->mode[i] = (uint8_t)(draw(state, 0, 99) < dropped_most ? ADCGS_INTER_DROPPED :
-                                  draw(state, 0, 1)                 ? ADCGS_INTER_SAME :
-                                                                      ADCGS_INTER_REFINED);
+        kept->mode[i] = (uint8_t)(draw(state, 0, 99) < dropped_most ? ADCGS_INTER_DROPPED
+                                  : draw(state, 0, 1)               ? ADCGS_INTER_SAME
+                                                                    : ADCGS_INTER_REFINED);
         kept->n += kept->mode[i] != ADCGS_INTER_DROPPED;
         for (int g = 0; kept->mode[i] == ADCGS_INTER_REFINED && g < ADCGS_INTER_GROUPS; g++) {
             const int n = adcgs_inter_channels(&before->params, g);
@@ -340,7 +340,7 @@ static adcgs_status random_joined(adcgs_model *m, const adcgs_model *before, adc
 
 adcgs_status adcgs_random_follower(adcgs_model *m, const adcgs_model *before, uint32_t n, uint64_t *state, adcgs_error *error)
 {
-    adcgs_inter kept = { .n = 0 };
+    adcgs_inter kept = {.n = 0};
     *m = adcgs_random_frame(before);
     adcgs_status status = random_networks(m, before, state, error);
     if (status == ADCGS_OK)
@@ -351,14 +351,14 @@ adcgs_status adcgs_random_follower(adcgs_model *m, const adcgs_model *before, ui
 
 static adcgs_status random_cameras(adcgs_stream *stream, uint64_t *state, adcgs_error *error)
 {
-    static const double pose[12] = { 1, 0, 0, 0.25, 0, 1, 0, -0.5, 0, 0, 1, -4 };
+    static const double pose[12] = {1, 0, 0, 0.25, 0, 1, 0, -0.5, 0, 0, 1, -4};
     stream->n_cameras = (uint32_t)draw(state, 0, 3);
     stream->cameras = adcgs_alloc(NULL, stream->n_cameras, sizeof *stream->cameras, error);
     if (!stream->cameras)
         return ADCGS_ERR_MEMORY;
     for (uint32_t i = 0; i < stream->n_cameras; i++) {
         adcgs_camera *c = &stream->cameras[i];
-        *c = (adcgs_camera){ .width = 64, .height = 48, .fx = 50 + (i > 1), .fy = 50, .cx = 32, .cy = 24, .near_plane = 0.01 };
+        *c = (adcgs_camera){.width = 64, .height = 48, .fx = 50 + (i > 1), .fy = 50, .cx = 32, .cy = 24, .near_plane = 0.01};
         memcpy(c->cam_to_world, pose, sizeof pose);
         c->cam_to_world[7] = i == 1 ? 0.1 : -0.5; /* 0.1 is no binary32 */
         snprintf(c->name, sizeof c->name, "camera %u", i);

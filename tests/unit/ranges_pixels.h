@@ -149,7 +149,8 @@ static inline void ranges_blend_block(blended pixels[16], const adcgs_view *view
                                       int y)
 {
     for (int i = 0; i < 16; i++)
-        pixels[i] = (blended){.x = (float)(x + (i & 3)) + 0.5f, .y = (float)(y + (i >> 2)) + 0.5f,
+        pixels[i] = (blended){.x = (float)(x + (i & 3)) + 0.5f,
+                              .y = (float)(y + (i >> 2)) + 0.5f,
                               .t = x + (i & 3) < view->width && y + (i >> 2) < view->height};
     for (uint32_t s = 0; s < n; s++) {
         int light = 0;

@@ -14,13 +14,12 @@
 enum { CAMERAS = 6, MOMENTS = 9, VIEWS = CAMERAS * MOMENTS, WIDTH = 96, HEIGHT = 72, FOCAL = 80 };
 #define WALL 2.0
 #define SQUARE 1.2
-#define HALF 0.12  /* of the square */
-#define SPEED 0.8  /* along x, per unit of time */
+#define HALF 0.12 /* of the square */
+#define SPEED 0.8 /* along x, per unit of time */
 
 static double half_wide = HALF, half_high = HALF;
 static adcgs_scene_view views[VIEWS];
-static adcgs_scene scene = { .views = { views }, .n_views = { VIEWS }, .duration = 1, .n_times = MOMENTS,
-                              .rate = { MOMENTS - 1, 1 } };
+static adcgs_scene scene = {.views = {views}, .n_views = {VIEWS}, .duration = 1, .n_times = MOMENTS, .rate = {MOMENTS - 1, 1}};
 
 /** Smooth noise of cells of 0.1, of a colour channel of a surface. */
 static double texture(double x, double y, uint64_t surface)
@@ -39,10 +38,11 @@ static double square_at(double t)
 
 static double colour_at(const adcgs_camera *c, double t, double px, double py, int channel)
 {
-    const double ray[2] = { (px - c->cx) / c->fx, (py - c->cy) / c->fy }, *m = c->cam_to_world;
+    const double ray[2] = {(px - c->cx) / c->fx, (py - c->cy) / c->fy}, *m = c->cam_to_world;
     const double x = m[3] + SQUARE * ray[0] - square_at(t), y = m[7] + SQUARE * ray[1];
-    return fabs(x) < half_wide && fabs(y) < half_high ? texture(x, y, 10 + (uint64_t)channel)
-                                           : texture(m[3] + WALL * ray[0], m[7] + WALL * ray[1], 20 + (uint64_t)channel);
+    return fabs(x) < half_wide && fabs(y) < half_high
+               ? texture(x, y, 10 + (uint64_t)channel)
+               : texture(m[3] + WALL * ray[0], m[7] + WALL * ray[1], 20 + (uint64_t)channel);
 }
 
 /** Writes the image of the view's camera at a time; NaN: the wall alone. */
@@ -60,9 +60,15 @@ static void put_view(adcgs_scene_view *v, int camera, int moment)
 {
     char name[32];
     v->time = moment / (MOMENTS - 1.0);
-    v->camera = (adcgs_camera){ .width = WIDTH, .height = HEIGHT, .fx = FOCAL, .fy = FOCAL, .cx = WIDTH / 2, .cy = HEIGHT / 2,
-                                .near_plane = 0.01, .cam_to_world = { 1, 0, 0, 0.15 * (camera % 3 - 1), 0, 1, 0,
-                                                                      0.15 * (camera / 3) - 0.075, 0, 0, 1, 0 } };
+    v->camera =
+        (adcgs_camera){.width = WIDTH,
+                       .height = HEIGHT,
+                       .fx = FOCAL,
+                       .fy = FOCAL,
+                       .cx = WIDTH / 2,
+                       .cy = HEIGHT / 2,
+                       .near_plane = 0.01,
+                       .cam_to_world = {1, 0, 0, 0.15 * (camera % 3 - 1), 0, 1, 0, 0.15 * (camera / 3) - 0.075, 0, 0, 1, 0}};
     snprintf(name, sizeof name, "%d-%d.ppm", camera, moment);
     v->path = strdup(in(name));
     put_picture(v, v->time);

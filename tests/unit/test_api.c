@@ -27,8 +27,7 @@ static void assert_guarded(const guarded *g, size_t size)
 static void test_config_sizes(void **state)
 {
     (void)state;
-    const size_t sizes[] = { 0, 3, sizeof(size_t), offsetof(adcgs_config, pool), sizeof(adcgs_config),
-                             sizeof(adcgs_config) + 72 };
+    const size_t sizes[] = {0, 3, sizeof(size_t), offsetof(adcgs_config, pool), sizeof(adcgs_config), sizeof(adcgs_config) + 72};
     for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++) {
         guarded g;
         memset(&g, GUARD, sizeof g);
@@ -55,7 +54,7 @@ static void test_callers_of_all_ages(void **state)
 {
     const fixture *f = *state;
     adcgs_decoder *d = NULL;
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     guarded g;
     memset(&g, GUARD, sizeof g);
     adcgs_config_init(&g.config, offsetof(adcgs_config, pool));
@@ -68,7 +67,7 @@ static void test_callers_of_all_ages(void **state)
     g.bytes[sizeof(adcgs_config) + 15] = 1;
     assert_int_equal(adcgs_open_memory(&d, f->bytes.data, f->bytes.size, &g.config, &error), ADCGS_ERR_UNSUPPORTED);
     assert_non_null(strstr(error.text, "does not know"));
-    const size_t wrong[] = { 0, 3, offsetof(adcgs_config, pool) - 1, 4097, SIZE_MAX };
+    const size_t wrong[] = {0, 3, offsetof(adcgs_config, pool) - 1, 4097, SIZE_MAX};
     for (size_t i = 0; i < ADCGS_COUNTOF(wrong); i++) {
         adcgs_config_init(&g.config, sizeof g.config);
         g.config.size = wrong[i];
@@ -81,7 +80,7 @@ static void test_callers_of_all_ages(void **state)
 static void test_info_sizes(void **state)
 {
     const fixture *f = *state;
-    const size_t sizes[] = { sizeof(size_t), offsetof(adcgs_info, scene_origin), sizeof(adcgs_info), sizeof(adcgs_info) + 40 };
+    const size_t sizes[] = {sizeof(size_t), offsetof(adcgs_info, scene_origin), sizeof(adcgs_info), sizeof(adcgs_info) + 40};
     adcgs_decoder *d = open_with(f, NULL);
     adcgs_error error;
     for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++) {
@@ -128,13 +127,13 @@ static void test_version(void **state)
 }
 
 /** A wrong call: its status, and a line that names the fault. */
-#define ASSERT_REFUSED(call, word)                                   \
-    do {                                                             \
-        error = (adcgs_error){ ADCGS_OK, "" };                       \
-        assert_int_equal(call, ADCGS_ERR_USAGE);                     \
-        assert_int_equal(error.status, ADCGS_ERR_USAGE);             \
-        if (!strstr(error.text, word))                               \
-            fail_msg("\"%s\" does not name %s", error.text, word);   \
+#define ASSERT_REFUSED(call, word)                                 \
+    do {                                                           \
+        error = (adcgs_error){ADCGS_OK, ""};                       \
+        assert_int_equal(call, ADCGS_ERR_USAGE);                   \
+        assert_int_equal(error.status, ADCGS_ERR_USAGE);           \
+        if (!strstr(error.text, word))                             \
+            fail_msg("\"%s\" does not name %s", error.text, word); \
     } while (0)
 
 static void test_errors(void **state)
@@ -143,7 +142,7 @@ static void test_errors(void **state)
     adcgs_decoder *d = open_with(f, NULL), *none = NULL;
     adcgs_camera camera = fixture_camera;
     adcgs_primitives primitives;
-    adcgs_frame frame = { FIXTURE_WIDTH, FIXTURE_HEIGHT, NULL };
+    adcgs_frame frame = {FIXTURE_WIDTH, FIXTURE_HEIGHT, NULL};
     adcgs_pool *pool;
     adcgs_info info;
     adcgs_error error;
@@ -181,7 +180,7 @@ static int count_limits(const fixture *f, uint64_t limit, adcgs_error *error)
 {
     static float rgb[3 * FIXTURE_WIDTH * FIXTURE_HEIGHT];
     static uint8_t pixels[4 * FIXTURE_WIDTH * FIXTURE_HEIGHT];
-    adcgs_frame frame = { FIXTURE_WIDTH, FIXTURE_HEIGHT, rgb };
+    adcgs_frame frame = {FIXTURE_WIDTH, FIXTURE_HEIGHT, rgb};
     adcgs_decoder *d = NULL;
     adcgs_primitives primitives;
     adcgs_config config;
@@ -217,7 +216,7 @@ static void test_memory_limits(void **state)
 {
     const fixture *f = *state;
     adcgs_error error;
-    int seen[7] = { 0 };
+    int seen[7] = {0};
     for (uint64_t limit = 1000; limit < 4000000; limit += limit / 40) {
         const int hits = count_limits(f, limit, NULL);
         assert_int_equal(count_limits(f, limit, &error), hits);
@@ -248,7 +247,7 @@ static void test_log(void **state)
     const fixture *f = *state;
     const char *source = getenv("srcdir");
     char path[1024];
-    heard h = { 0 };
+    heard h = {0};
     adcgs_decoder *d = NULL;
     adcgs_config config;
     adcgs_config_init(&config, sizeof config);
@@ -308,9 +307,11 @@ static void test_writer_limits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_config_sizes), cmocka_unit_test(test_callers_of_all_ages), cmocka_unit_test(test_info_sizes),
-        cmocka_unit_test(test_metadata),     cmocka_unit_test(test_version),             cmocka_unit_test(test_errors),
-        cmocka_unit_test(test_memory_limits), cmocka_unit_test(test_log),                cmocka_unit_test(test_writer_limits),
+        cmocka_unit_test(test_config_sizes),  cmocka_unit_test(test_callers_of_all_ages),
+        cmocka_unit_test(test_info_sizes),    cmocka_unit_test(test_metadata),
+        cmocka_unit_test(test_version),       cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_memory_limits), cmocka_unit_test(test_log),
+        cmocka_unit_test(test_writer_limits),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

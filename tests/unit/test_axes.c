@@ -44,7 +44,10 @@ static void make_scene(double radius, double degrees)
         const double a = degrees * (i - 0.5 * (CAMERAS - 1)) / (CAMERAS - 1) * M_PI / 180.0, look = radius > 1.0 ? -1.0 : 1.0;
         const double z[3] = {look * cos(a), look * sin(a), 0.0}, down[3] = {0.0, 0.0, -1.0};
         adcgs_camera *c = &views[i].camera;
-        *c = (adcgs_camera){.width = SIDE, .height = SIDE, .fx = radius > 1.0 ? 1.6 * SIDE : 0.6 * SIDE, .cx = 0.5 * SIDE,
+        *c = (adcgs_camera){.width = SIDE,
+                            .height = SIDE,
+                            .fx = radius > 1.0 ? 1.6 * SIDE : 0.6 * SIDE,
+                            .cx = 0.5 * SIDE,
                             .cy = 0.5 * SIDE};
         c->fy = c->fx;
         for (int k = 0; k < 3; k++) {

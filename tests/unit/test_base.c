@@ -37,15 +37,15 @@ static void test_md5(void **state)
     (void)state;
     static const struct {
         const char *text, *digest;
-    } answers[] = { /* RFC 1321, A.5 */
-        { "", "d41d8cd98f00b204e9800998ecf8427e" },
-        { "a", "0cc175b9c0f1b6a831c399e269772661" },
-        { "abc", "900150983cd24fb0d6963f7d28e17f72" },
-        { "message digest", "f96b697d7cb7938d525a2f31aaf161d0" },
-        { "abcdefghijklmnopqrstuvwxyz", "c3fcd3d76192e4007dfb496cca67e13b" },
-        { "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789", "d174ab98d277d9f5a5611c2c9f419d9f" },
-        { "12345678901234567890123456789012345678901234567890123456789012345678901234567890",
-          "57edf4a22be3c955ac49da2e2107b67a" },
+    } answers[] = {
+        /* RFC 1321, A.5 */
+        {"", "d41d8cd98f00b204e9800998ecf8427e"},
+        {"a", "0cc175b9c0f1b6a831c399e269772661"},
+        {"abc", "900150983cd24fb0d6963f7d28e17f72"},
+        {"message digest", "f96b697d7cb7938d525a2f31aaf161d0"},
+        {"abcdefghijklmnopqrstuvwxyz", "c3fcd3d76192e4007dfb496cca67e13b"},
+        {"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789", "d174ab98d277d9f5a5611c2c9f419d9f"},
+        {"12345678901234567890123456789012345678901234567890123456789012345678901234567890", "57edf4a22be3c955ac49da2e2107b67a"},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(answers); i++) {
         const size_t length = strlen(answers[i].text);
@@ -66,8 +66,8 @@ static void test_md5(void **state)
 static void test_memory(void **state)
 {
     (void)state;
-    adcgs_memory memory = { .limit = 10000 };
-    adcgs_error error = { 0 };
+    adcgs_memory memory = {.limit = 10000};
+    adcgs_error error = {0};
     uint8_t *a = adcgs_alloc(&memory, 1000, 5, &error), *b = adcgs_alloc(&memory, 0, 8, NULL);
     assert_non_null(a);
     assert_non_null(b);
@@ -167,7 +167,7 @@ static void run_pool(int threads)
 static void test_pool(void **state)
 {
     (void)state;
-    static const int counts[] = { 0, 1, 2, 7 };
+    static const int counts[] = {0, 1, 2, 7};
     for (size_t i = 0; i < ADCGS_COUNTOF(counts); i++)
         run_pool(counts[i]);
     adcgs_pool *pool;
@@ -212,9 +212,8 @@ static void test_sweep(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_crc32c), cmocka_unit_test(test_md5), cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_status), cmocka_unit_test(test_cpu), cmocka_unit_test(test_pool),
-        cmocka_unit_test(test_sweep),
+        cmocka_unit_test(test_crc32c), cmocka_unit_test(test_md5),  cmocka_unit_test(test_memory), cmocka_unit_test(test_status),
+        cmocka_unit_test(test_cpu),    cmocka_unit_test(test_pool), cmocka_unit_test(test_sweep),
     };
     return cmocka_run_group_tests_name("base", tests, NULL, NULL);
 }

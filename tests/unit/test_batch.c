@@ -48,7 +48,7 @@ static void parts_sum_to_the_same_bits(void **state)
                 for (uint32_t place = n * r / ranks; place < n * (r + 1) / ranks; place++) {
                     for (size_t i = 0; i < WIDE; i++)
                         room[place][i] = value_of(place, i);
-                    n_own = adcgs_tree_add(own, n_own, (adcgs_tree_part){ place, 1, room[place] }, WIDE);
+                    n_own = adcgs_tree_add(own, n_own, (adcgs_tree_part){place, 1, room[place]}, WIDE);
                     assert_in_range(n_own, 1, ADCGS_TREE_PARTS - 1);
                 }
                 for (int i = 0; i < n_own; i++)
@@ -76,7 +76,7 @@ static adcgs_trainer *make_at(const adcgs_train_config *config, uint32_t stop)
 /** At the start, and while noise stands for rounding: the mean of four view passes, and the sum of their statistics. */
 static void gradients_are_the_mean(void **state)
 {
-    static const uint32_t stops[] = { 0, 20 };
+    static const uint32_t stops[] = {0, 20};
     adcgs_train_config config = small_config();
     config.iterations = 60;
     config.batch = 4;
@@ -201,7 +201,7 @@ static adcgs_status swap(void *user, const adcgs_ranks_part *out, int n_out, con
 {
     const member *m = user;
     board *b = m->board;
-    int taken[TEAM_MOST] = { 0 };
+    int taken[TEAM_MOST] = {0};
     (void)why;
     b->out[m->team.rank] = out;
     b->n_out[m->team.rank] = n_out;
@@ -231,10 +231,10 @@ static void *run_member(void *user)
 /** Runs the team's trainers to their end, or until the first one's observer says stop. */
 static void run_team(member *team, int size, board *b)
 {
-    *b = (board){ .faults = 0 };
+    *b = (board){.faults = 0};
     assert_int_equal(pthread_barrier_init(&b->all, NULL, (unsigned)size), 0);
     for (int r = 0; r < size; r++) {
-        team[r].team = (adcgs_team){ r, size, swap, &team[r] };
+        team[r].team = (adcgs_team){r, size, swap, &team[r]};
         team[r].board = b;
         team[r].t->team = &team[r].team;
         assert_int_equal(pthread_create(&team[r].thread, NULL, run_member, &team[r]), 0);
@@ -248,7 +248,7 @@ static void run_team(member *team, int size, board *b)
 /** With any number of members, each ends with the state of a single run. All stop where the first one does. */
 static void teams_end_as_one(void **state)
 {
-    static const int sizes[][2] = { { 4, 2 }, { 5, 3 } };
+    static const int sizes[][2] = {{4, 2}, {5, 3}};
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++) {
         const adcgs_train_config config = run_config((uint32_t)sizes[i][0]);
@@ -258,7 +258,7 @@ static void teams_end_as_one(void **state)
         board b;
         run(alone, NULL, NULL);
         for (int r = 0; r < size; r++)
-            team[r] = (member){ .t = make_trainer(&config, NULL), .observe = r ? NULL : stop_at, .stop = 20 };
+            team[r] = (member){.t = make_trainer(&config, NULL), .observe = r ? NULL : stop_at, .stop = 20};
         run_team(team, size, &b);
         for (int r = 0; r < size; r++) {
             assert_int_equal(team[r].status, ADCGS_OK);
@@ -285,7 +285,7 @@ static void strangers_are_noticed(void **state)
     board b;
     (void)state;
     for (int r = 0; r < 2; r++)
-        team[r] = (member){ .t = make_trainer(&config, NULL) };
+        team[r] = (member){.t = make_trainer(&config, NULL)};
     team[1].t->f->param[ADCGS_P_THETA].p[3] += 1e-6f;
     run_team(team, 2, &b);
     for (int r = 0; r < 2; r++) {
@@ -298,11 +298,8 @@ static void strangers_are_noticed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parts_sum_to_the_same_bits),
-        cmocka_unit_test(gradients_are_the_mean),
-        cmocka_unit_test(runs_end_alike),
-        cmocka_unit_test(teams_end_as_one),
-        cmocka_unit_test(strangers_are_noticed),
+        cmocka_unit_test(parts_sum_to_the_same_bits), cmocka_unit_test(gradients_are_the_mean), cmocka_unit_test(runs_end_alike),
+        cmocka_unit_test(teams_end_as_one),           cmocka_unit_test(strangers_are_noticed),
     };
     return cmocka_run_group_tests(tests, open_scene, close_scene);
 }

@@ -18,7 +18,7 @@ static uint32_t random32(uint64_t *state)
 static void test_fields(void **state)
 {
     (void)state;
-    static const uint32_t values[] = { 0, 1, 127, 128, 16383, 16384, 0x0fffffff, 0x10000000, UINT32_MAX };
+    static const uint32_t values[] = {0, 1, 127, 128, 16383, 16384, 0x0fffffff, 0x10000000, UINT32_MAX};
     adcgs_buffer b;
     adcgs_buffer_init(&b);
     for (size_t i = 0; i < ADCGS_COUNTOF(values); i++) {
@@ -45,8 +45,10 @@ static void test_fields(void **state)
 static void test_varint_is_unique(void **state)
 {
     (void)state;
-    static const uint8_t bad[][6] = { { 0x80, 0x00 }, { 0xff, 0x80, 0x00 }, { 0xff, 0xff, 0xff, 0xff, 0x10 },
-                                      { 0x80, 0x80, 0x80, 0x80, 0x80, 0x01 } };
+    static const uint8_t bad[][6] = {{0x80, 0x00},
+                                     {0xff, 0x80, 0x00},
+                                     {0xff, 0xff, 0xff, 0xff, 0x10},
+                                     {0x80, 0x80, 0x80, 0x80, 0x80, 0x01}};
     for (size_t i = 0; i < ADCGS_COUNTOF(bad); i++) {
         adcgs_reader r;
         adcgs_reader_init(&r, bad[i], sizeof bad[i]);
@@ -168,7 +170,7 @@ static void test_long_carry(void **state)
 
 static void decode_anything(adcgs_range_dec *d, int count)
 {
-    static const uint32_t cdf[] = { 0, 100, 60000, 65000, 65536 };
+    static const uint32_t cdf[] = {0, 100, 60000, 65000, 65536};
     adcgs_adaptive context = ADCGS_ADAPTIVE_INIT;
     for (int i = 0; i < count; i++) {
         const int symbol = adcgs_range_dec_symbol(d, cdf, 4);
@@ -182,7 +184,7 @@ static void decode_anything(adcgs_range_dec *d, int count)
 static void test_damage_is_reported(void **state)
 {
     (void)state;
-    static const uint8_t top[8] = { 255, 255, 255, 255, 255, 255, 255, 255 };
+    static const uint8_t top[8] = {255, 255, 255, 255, 255, 255, 255, 255};
     adcgs_range_dec d;
     adcgs_range_dec_init(&d, top, 8);
     assert_int_equal(adcgs_range_dec_finish(&d, NULL), ADCGS_ERR_DATA);
@@ -231,9 +233,12 @@ static void test_bit_cost(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fields),       cmocka_unit_test(test_varint_is_unique),
-        cmocka_unit_test(test_round_trip),   cmocka_unit_test(test_long_carry),
-        cmocka_unit_test(test_damage_is_reported), cmocka_unit_test(test_adaptive_stays_inside),
+        cmocka_unit_test(test_fields),
+        cmocka_unit_test(test_varint_is_unique),
+        cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_long_carry),
+        cmocka_unit_test(test_damage_is_reported),
+        cmocka_unit_test(test_adaptive_stays_inside),
         cmocka_unit_test(test_bit_cost),
     };
     return cmocka_run_group_tests_name("bits", tests, NULL, NULL);

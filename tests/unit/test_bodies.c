@@ -17,16 +17,16 @@ enum { CAMERAS = 6, MOMENTS = 8, VIEWS = CAMERAS * MOMENTS, WIDTH = 104, HEIGHT 
 #define PI 3.14159265358979
 #define WALL 2.2
 #define TURN (20 * PI / 180) /* of the first box, per frame, about y */
-#define STEP 0.03      /* of the second box, per frame, along y */
+#define STEP 0.03            /* of the second box, per frame, along y */
 
 static adcgs_scene_view views[VIEWS];
-static adcgs_scene scene = { .views = { views }, .n_views = { VIEWS }, .duration = 1, .n_times = MOMENTS,
-                             .near_bound = 0.9, .rate = { MOMENTS - 1, 1 } };
-static const adcgs_stereo_options options = { .scale = 1, .still = 300, .moving = 700, .bodies = ADCGS_BODIES_MAX };
-static const double half[BOXES] = { 0.2, 0.13 };
+static adcgs_scene scene =
+    {.views = {views}, .n_views = {VIEWS}, .duration = 1, .n_times = MOMENTS, .near_bound = 0.9, .rate = {MOMENTS - 1, 1}};
+static const adcgs_stereo_options options = {.scale = 1, .still = 300, .moving = 700, .bodies = ADCGS_BODIES_MAX};
+static const double half[BOXES] = {0.2, 0.13};
 static adcgs_stereo found; /* without threads */
-static int flickers; /* true if the boxes' appearance changes */
-static int shadow;   /* true if there are no boxes, but a round shadow that crosses the wall */
+static int flickers;       /* true if the boxes' appearance changes */
+static int shadow;         /* true if there are no boxes, but a round shadow that crosses the wall */
 
 /** Smooth noise with cells of a width. */
 static double texture(double x, double y, double width, uint64_t surface)
@@ -34,8 +34,8 @@ static double texture(double x, double y, double width, uint64_t surface)
     const double u = x / width + 1000, v = y / width + 1000, a = u - floor(u), b = v - floor(v);
     double corner[4];
     for (int k = 0; k < 4; k++)
-        corner[k] = adcgs_random_unit(1, surface, (uint64_t)(int64_t)(floor(u) + (k & 1)) << 20 ^
-                                                      (uint64_t)(int64_t)(floor(v) + (k >> 1)));
+        corner[k] = adcgs_random_unit(1, surface,
+                                      (uint64_t)(int64_t)(floor(u) + (k & 1)) << 20 ^ (uint64_t)(int64_t)(floor(v) + (k >> 1)));
     return 0.1 + 0.8 * ((corner[0] * (1 - a) + corner[1] * a) * (1 - b) + (corner[2] * (1 - a) + corner[3] * a) * b);
 }
 
@@ -43,7 +43,7 @@ static double texture(double x, double y, double width, uint64_t surface)
 static void to_box(int box, int moment, const double x[3], double out[3])
 {
     const double angle = box ? 0 : TURN * moment, c = cos(angle), s = sin(angle);
-    const double at[3] = { x[0] - (box ? 0.38 : -0.2), x[1] - (box ? STEP * (moment - 3.5) : 0), x[2] - 1.2 };
+    const double at[3] = {x[0] - (box ? 0.38 : -0.2), x[1] - (box ? STEP * (moment - 3.5) : 0), x[2] - 1.2};
     out[0] = c * at[0] - s * at[2];
     out[1] = at[1];
     out[2] = s * at[0] + c * at[2];
@@ -52,7 +52,7 @@ static void to_box(int box, int moment, const double x[3], double out[3])
 /** Intersects a ray with a box and returns the colour there; 0 if they do not meet. */
 static int hit(int box, int moment, const double eye[3], const double ray[3], int channel, double *colour)
 {
-    const double far[3] = { eye[0] + ray[0], eye[1] + ray[1], eye[2] + ray[2] };
+    const double far[3] = {eye[0] + ray[0], eye[1] + ray[1], eye[2] + ray[2]};
     double from[3], to[3], near = 0, last = 1e9, x[3];
     int face = 0;
     to_box(box, moment, eye, from);
@@ -74,7 +74,7 @@ static int hit(int box, int moment, const double eye[3], const double ray[3], in
 
 static double colour_at(const adcgs_camera *c, int moment, double px, double py, int channel)
 {
-    const double ray[3] = { (px - c->cx) / c->fx, (py - c->cy) / c->fy, 1 }, *m = c->cam_to_world, eye[3] = { m[3], m[7], m[11] };
+    const double ray[3] = {(px - c->cx) / c->fx, (py - c->cy) / c->fy, 1}, *m = c->cam_to_world, eye[3] = {m[3], m[7], m[11]};
     const double x = m[3] + WALL * ray[0], y = m[7] + WALL * ray[1];
     double colour;
     for (int box = 0; box < BOXES && !shadow; box++)
@@ -88,9 +88,14 @@ static void put_view(adcgs_scene_view *v, int camera, int moment)
     char name[32];
     adcgs_image image;
     v->time = moment / (MOMENTS - 1.0);
-    v->camera = (adcgs_camera){ .width = WIDTH, .height = HEIGHT, .fx = FOCAL, .fy = FOCAL, .cx = WIDTH / 2, .cy = HEIGHT / 2,
-                                .near_plane = 0.01, .cam_to_world = { 1, 0, 0, 0.2 * (camera % 3 - 1), 0, 1, 0,
-                                                                      0.2 * (camera / 3) - 0.1, 0, 0, 1, 0 } };
+    v->camera = (adcgs_camera){.width = WIDTH,
+                               .height = HEIGHT,
+                               .fx = FOCAL,
+                               .fy = FOCAL,
+                               .cx = WIDTH / 2,
+                               .cy = HEIGHT / 2,
+                               .near_plane = 0.01,
+                               .cam_to_world = {1, 0, 0, 0.2 * (camera % 3 - 1), 0, 1, 0, 0.2 * (camera / 3) - 0.1, 0, 0, 1, 0}};
     snprintf(name, sizeof name, "%d-%d.ppm", camera, moment);
     free(v->path);
     v->path = strdup(in(name));
@@ -98,8 +103,8 @@ static void put_view(adcgs_scene_view *v, int camera, int moment)
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
         double sum = 0;
         for (int k = 0; k < 4; k++)
-            sum += colour_at(&v->camera, moment, i / 3 % WIDTH + 0.25 + 0.5 * (k & 1), i / 3 / WIDTH + 0.25 + 0.5 * (k >> 1),
-                             i % 3);
+            sum +=
+                colour_at(&v->camera, moment, i / 3 % WIDTH + 0.25 + 0.5 * (k & 1), i / 3 / WIDTH + 0.25 + 0.5 * (k >> 1), i % 3);
         image.data[i] = (float)(sum / 4);
     }
     assert_int_equal(adcgs_image_write(&image, v->path, 0, &error), ADCGS_OK);
@@ -148,7 +153,7 @@ static void check_sliding(const adcgs_stereo *s, const adcgs_stereo_body *b)
 static void boxes_are_followed(void **state)
 {
     const adcgs_stereo s = found;
-    uint32_t n[BOXES + 1] = { 0 }, right = 0, common = 0, still = 0;
+    uint32_t n[BOXES + 1] = {0}, right = 0, common = 0, still = 0;
     for (uint32_t b = 0; b < s.n_bodies; b++)
         print_message("%u points about %.2f %.2f %.2f\n", s.body[b].n, s.body[b].pivot[0], s.body[b].pivot[1],
                       s.body[b].pivot[2]);

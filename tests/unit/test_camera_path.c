@@ -18,9 +18,9 @@ static double uniform(uint64_t *state)
 /** Rotation about an axis by an angle, at a position; a lens and a time of its own. */
 static adcgs_camera_frame make_frame(const double axis[3], double angle, const double position[3], double focal, double time)
 {
-    adcgs_camera_frame frame = {.camera = {.width = 64, .height = 48, .fx = focal, .fy = 1.1 * focal, .cx = 30, .cy = 20,
-                                  .near_plane = 0.1},
-                       .time = time};
+    adcgs_camera_frame frame =
+        {.camera = {.width = 64, .height = 48, .fx = focal, .fy = 1.1 * focal, .cx = 30, .cy = 20, .near_plane = 0.1},
+         .time = time};
     double unit[3] = {axis[0], axis[1], axis[2]}, q[4];
     adcgs_v3_normalise(unit);
     adcgs_rotation_exp(unit, 0.5 * angle, q);
@@ -38,8 +38,8 @@ static void random_keys(adcgs_camera_key keys[KEYS], uint64_t seed)
         for (int i = 0; i < 6; i++)
             v[i] = 2.0 * uniform(&seed) - 1.0;
         at += 0.2 + uniform(&seed);
-        keys[k] = (adcgs_camera_key){at,
-                                     make_frame(v, 6.0 * uniform(&seed), v + 3, 50.0 + 20.0 * uniform(&seed), uniform(&seed))};
+        keys[k] =
+            (adcgs_camera_key){at, make_frame(v, 6.0 * uniform(&seed), v + 3, 50.0 + 20.0 * uniform(&seed), uniform(&seed))};
     }
 }
 
@@ -372,7 +372,8 @@ static void test_bad_files(void **state)
 /** Rendering cameras must be pinholes. */
 static void test_bent_lenses(void **state)
 {
-    static const char *const bent[][2] = {{"\"k1\":0.1", "distortion 0.1"}, {"\"is_fisheye\":true", "OPENCV_FISHEYE"},
+    static const char *const bent[][2] = {{"\"k1\":0.1", "distortion 0.1"},
+                                          {"\"is_fisheye\":true", "OPENCV_FISHEYE"},
                                           {"\"camera_model\":\"RADIAL_FISHEYE\"", "RADIAL_FISHEYE"}};
     for (size_t i = 0; i < ADCGS_COUNTOF(bent); i++) {
         adcgs_camera_path_request request = {0};
@@ -388,10 +389,10 @@ static void test_bent_lenses(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_turns),      cmocka_unit_test(test_through_keys),  cmocka_unit_test(test_smooth),
-        cmocka_unit_test(test_steady),     cmocka_unit_test(test_standstill),    cmocka_unit_test(test_bullet),
-        cmocka_unit_test(test_spiral),     cmocka_unit_test(test_bullet_at_rest), cmocka_unit_test(test_key_file),
-        cmocka_unit_test(test_bad_files),  cmocka_unit_test(test_bent_lenses),
+        cmocka_unit_test(test_turns),     cmocka_unit_test(test_through_keys),   cmocka_unit_test(test_smooth),
+        cmocka_unit_test(test_steady),    cmocka_unit_test(test_standstill),     cmocka_unit_test(test_bullet),
+        cmocka_unit_test(test_spiral),    cmocka_unit_test(test_bullet_at_rest), cmocka_unit_test(test_key_file),
+        cmocka_unit_test(test_bad_files), cmocka_unit_test(test_bent_lenses),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -289,8 +289,10 @@ static void wrong_wishes_are_refused(void **state)
     static const struct {
         adcgs_scenes_options options;
         const char *text;
-    } wrong[] = {{{.name = "dome", .format = "ppm"}, "expected png"}, {{.name = "tripod", .cameras = 2}, "one camera"},
-                 {{.name = "walk", .watch = 5}, "not on an arc"}, {{.name = "sweep", .aside = 0.1}, "not on an arc"}};
+    } wrong[] = {{{.name = "dome", .format = "ppm"}, "expected png"},
+                 {{.name = "tripod", .cameras = 2}, "one camera"},
+                 {{.name = "walk", .watch = 5}, "not on an arc"},
+                 {{.name = "sweep", .aside = 0.1}, "not on an arc"}};
     adcgs_error error;
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(wrong); i++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Claims: the owner is determined by processes where these can be queried, not by clocks, which may be wrong. */
-#define BEAT 1 /* second */
+#define BEAT 1        /* second */
 #include "io/claim.c" /* before any global name of the test can be shadowed */
 
 #include "outside_files.h"
@@ -72,7 +72,7 @@ static pid_t begin_owner(void)
 /** On one machine a running owner keeps its claim, and an ended one loses it, at any file time. */
 static void processes_are_believed(void **state)
 {
-    static const double ages[] = { 0, 600, -3600 };
+    static const double ages[] = {0, 600, -3600};
     const pid_t child = begin_owner();
     (void)state;
     kill(child, SIGSTOP); /* no beats */
@@ -111,7 +111,7 @@ static void numbers_are_given_again(void **state)
 
 static void *touch_often(void *argument)
 {
-    const struct timespec nap = { .tv_nsec = 100000000 };
+    const struct timespec nap = {.tv_nsec = 100000000};
     const int *const ends = argument;
     while (!*(const volatile int *)ends) {
         nanosleep(&nap, NULL);
@@ -123,7 +123,7 @@ static void *touch_often(void *argument)
 /** For an owner on another machine, only the file's time and its changes count. */
 static void times_that_go_on_are_believed(void **state)
 {
-    static const double ages[] = { 600, -3600 };
+    static const double ages[] = {600, -3600};
     pthread_t thread;
     int ends = 0;
     (void)state;

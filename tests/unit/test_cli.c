@@ -21,7 +21,7 @@ static void test_exit_codes(void **state)
 {
     static const int exits[] = {0, 2, 3, 3, 4, 4, 5, 4, 5, 1};
     for (size_t i = 0; i < ADCGS_COUNTOF(exits); i++)
-        assert_int_equal(adcgs_exit_code((adcgs_status)-(int)i), exits[i]);
+        assert_int_equal(adcgs_exit_code((adcgs_status) - (int)i), exits[i]);
     assert_int_equal(adcgs_exit_code((adcgs_status)7), 1);
 }
 
@@ -40,8 +40,8 @@ static void test_numbers(void **state)
     assert_true(!adcgs_parse_count("1.001k", 10, 100000, &i) && i == 1001);
     assert_true(!adcgs_parse_count("2M", 10, 5000000, &i) && i == 2000000);
     assert_true(!adcgs_parse_count("-3", -3, 12, &i) && i == -3);
-    static const char *const bad_counts[] = {"", "k", "1.5", "1.0001k", "20kk", "20 k", "20m", "0x2k", "200k", "nank",
-                                            "--1k", "1e9k"};
+    static const char *const bad_counts[] = {"",    "k",    "1.5",  "1.0001k", "20kk", "20 k",
+                                             "20m", "0x2k", "200k", "nank",    "--1k", "1e9k"};
     for (size_t n = 0; n < ADCGS_COUNTOF(bad_counts); n++)
         assert_int_equal(adcgs_parse_count(bad_counts[n], -100000, 100000, &i), -1);
     static const struct {
@@ -65,8 +65,8 @@ static void test_numbers(void **state)
     assert_true(!adcgs_parse_size("1.0625Ki", 0, UINT64_MAX, &size) && size == 1088);
     assert_true(!adcgs_parse_size("1g", 0, UINT64_MAX, &size) && size == 1000000000);
     assert_true(!adcgs_parse_size("1GiB", 0, UINT64_MAX, &size) && size == 1u << 30);
-    const char *bad_sizes[] = {"",    "K",    "-1", "+1",  "1KK",    "1T", "18446744074G",  "99999999999999999999", " 1",
-                               "1.5", "1.k", ".5k", "1i", "1kiBB", "1B", "1.5.5k", "1 k", "17179869184GiB", "1e5"};
+    const char *bad_sizes[] = {"",    "K",   "-1", "+1",    "1KK", "1T",     "18446744074G", "99999999999999999999", " 1", "1.5",
+                               "1.k", ".5k", "1i", "1kiBB", "1B",  "1.5.5k", "1 k",          "17179869184GiB",       "1e5"};
     for (size_t n = 0; n < ADCGS_COUNTOF(bad_sizes); n++)
         assert_int_equal(adcgs_parse_size(bad_sizes[n], 0, UINT64_MAX, &size), -1);
     assert_true(!adcgs_parse_real("1e-3", 0, 1, &real) && real == 1e-3);
@@ -262,14 +262,38 @@ static void test_progress(void **state)
 /* Invalid UTF-8 by Unicode's table 3-7: lone and missing continuations, overlong forms, surrogates, beyond the end. */
 static void test_utf8(void **state)
 {
-    static const char *const bad[] = {"\x80", "\xbf", "\xc3", "\xc3(", "\xc0\x80", "\xc1\xbf", "\xe0\x9f\xbf", "\xe2\x82",
-                                      "\xe2(\x82", "\xed\xa0\x80", "\xed\xbf\xbf", "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80",
+    static const char *const bad[] = {"\x80",
+                                      "\xbf",
+                                      "\xc3",
+                                      "\xc3(",
+                                      "\xc0\x80",
+                                      "\xc1\xbf",
+                                      "\xe0\x9f\xbf",
+                                      "\xe2\x82",
+                                      "\xe2(\x82",
+                                      "\xed\xa0\x80",
+                                      "\xed\xbf\xbf",
+                                      "\xf0\x8f\xbf\xbf",
+                                      "\xf4\x90\x80\x80",
                                       "\xf5\x80\x80\x80",
-                                      "\xf8\x88\x80\x80\x80", "\xfe", "\xff", ""};
-    static const struct { const char *text; int bytes; uint32_t code; } good[] = {
-        {"A", 1, 'A'}, {"\x7f", 1, 0x7f}, {"\xc2\x80", 2, 0x80}, {"\xdf\xbf", 2, 0x7ff}, {"\xe0\xa0\x80", 3, 0x800},
-        {"\xed\x9f\xbf", 3, 0xd7ff}, {"\xee\x80\x80", 3, 0xe000}, {"\xef\xbf\xbf", 3, 0xffff}, {"\xf0\x90\x80\x80", 4, 0x10000},
-        {"\xf4\x8f\xbf\xbf", 4, 0x10ffff}};
+                                      "\xf8\x88\x80\x80\x80",
+                                      "\xfe",
+                                      "\xff",
+                                      ""};
+    static const struct {
+        const char *text;
+        int bytes;
+        uint32_t code;
+    } good[] = {{"A", 1, 'A'},
+                {"\x7f", 1, 0x7f},
+                {"\xc2\x80", 2, 0x80},
+                {"\xdf\xbf", 2, 0x7ff},
+                {"\xe0\xa0\x80", 3, 0x800},
+                {"\xed\x9f\xbf", 3, 0xd7ff},
+                {"\xee\x80\x80", 3, 0xe000},
+                {"\xef\xbf\xbf", 3, 0xffff},
+                {"\xf0\x90\x80\x80", 4, 0x10000},
+                {"\xf4\x8f\xbf\xbf", 4, 0x10ffff}};
     uint32_t code = 0;
     for (size_t i = 0; i < ADCGS_COUNTOF(bad); i++)
         assert_int_equal(adcgs_utf8_next(bad[i], &code), 0);
@@ -285,17 +309,28 @@ static void test_utf8(void **state)
 /* No control character of any text reaches a terminal; all other characters are unchanged. */
 static void test_shown(void **state)
 {
-    static const struct { const char *text, *shown, *cell; int columns; } cases[] = {
-        {"plain \xc3\xa4\xe6\xbc\xa2", "plain \xc3\xa4\xe6\xbc\xa2", "plain \xc3\xa4\xe6\xbc\xa2", 8},
-        {"\033[2J\a", "\\x1b[2J\\x07", "\\x1b[2J\\x07", 11},
-        {"a\r\nb\tc", "a\\x0d\\x0ab\\x09c", "a\\x0d\\x0ab\\x09c", 15},
-        {"\xc2\x9b" "2J\x7f", "\\u{9b}2J\\x7f", "\\u{9b}2J\\x7f", 12},
-        {"gnp.\xe2\x80\xae" "exe", "gnp.\\u{202e}exe", "gnp.\\u{202e}exe", 15},
-        {"\xe2\x81\xa6\xe2\x80\xa8\xf3\xa0\x81\x81", "\\u{2066}\\u{2028}\\u{e0041}", "\\u{2066}\\u{2028}\\u{e0041}", 25},
-        {"\x9b" "2J\xff", "\\x9b2J\\xff", "\\x9b2J\\xff", 10},
-        {"=1+2", "=1+2", "'=1+2", 4}, {"@x", "@x", "'@x", 2}, {"+1,2", "+1,2", "\"'+1,2\"", 4},
-        {"-a\"b", "-a\"b", "\"'-a\"\"b\"", 4},
-        {"\t=1", "\\x09=1", "\\x09=1", 6}, {"", "", "", 0}};
+    static const struct {
+        const char *text, *shown, *cell;
+        int columns;
+    } cases[] = {{"plain \xc3\xa4\xe6\xbc\xa2", "plain \xc3\xa4\xe6\xbc\xa2", "plain \xc3\xa4\xe6\xbc\xa2", 8},
+                 {"\033[2J\a", "\\x1b[2J\\x07", "\\x1b[2J\\x07", 11},
+                 {"a\r\nb\tc", "a\\x0d\\x0ab\\x09c", "a\\x0d\\x0ab\\x09c", 15},
+                 {"\xc2\x9b"
+                  "2J\x7f",
+                  "\\u{9b}2J\\x7f", "\\u{9b}2J\\x7f", 12},
+                 {"gnp.\xe2\x80\xae"
+                  "exe",
+                  "gnp.\\u{202e}exe", "gnp.\\u{202e}exe", 15},
+                 {"\xe2\x81\xa6\xe2\x80\xa8\xf3\xa0\x81\x81", "\\u{2066}\\u{2028}\\u{e0041}", "\\u{2066}\\u{2028}\\u{e0041}", 25},
+                 {"\x9b"
+                  "2J\xff",
+                  "\\x9b2J\\xff", "\\x9b2J\\xff", 10},
+                 {"=1+2", "=1+2", "'=1+2", 4},
+                 {"@x", "@x", "'@x", 2},
+                 {"+1,2", "+1,2", "\"'+1,2\"", 4},
+                 {"-a\"b", "-a\"b", "\"'-a\"\"b\"", 4},
+                 {"\t=1", "\\x09=1", "\\x09=1", 6},
+                 {"", "", "", 0}};
     for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
         char text[100] = {0};
         FILE *file = tmpfile();
@@ -388,10 +423,9 @@ static void test_json_failures(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_exit_codes), cmocka_unit_test(test_numbers),
-                                       cmocka_unit_test(test_options),
-                                       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_progress),
-                                       cmocka_unit_test(test_utf8),
-                                       cmocka_unit_test(test_shown), cmocka_unit_test(test_json),
+                                       cmocka_unit_test(test_options),    cmocka_unit_test(test_mistakes),
+                                       cmocka_unit_test(test_progress),   cmocka_unit_test(test_utf8),
+                                       cmocka_unit_test(test_shown),      cmocka_unit_test(test_json),
                                        cmocka_unit_test(test_json_texts), cmocka_unit_test(test_json_failures)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,8 +54,11 @@ static double nearest_of_all(uint32_t stride, const double x[3], const float rgb
 
 static void nearest_is_that_of_all(void **state)
 {
-    static const struct { double edge, reach, tint; uint32_t stride; } try[] = {
-        { 0.02, 0.1, 0.3, 1 }, { 0.1, 0.02, 0.3, 1 }, { 0.1, 0.3, 0, 3 }, { 3, 0.5, 1, 1 }, { 0.01, 0.2, 0.01, 5 },
+    static const struct {
+        double edge, reach, tint;
+        uint32_t stride;
+    } try[] = {
+        {0.02, 0.1, 0.3, 1}, {0.1, 0.02, 0.3, 1}, {0.1, 0.3, 0, 3}, {3, 0.5, 1, 1}, {0.01, 0.2, 0.01, 5},
     };
     int met = 0;
     for (size_t k = 0; k < ADCGS_COUNTOF(try); k++) {
@@ -86,6 +89,6 @@ static void nearest_is_that_of_all(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(nearest_is_that_of_all) };
+    const struct CMUnitTest tests[] = {cmocka_unit_test(nearest_is_that_of_all)};
     return cmocka_run_group_tests(tests, make_points, NULL);
 }

@@ -45,7 +45,8 @@ static void put_exr(const char *name, int has_alpha, const exr_attr_chromaticiti
     assert_int_equal(exr_start_write(&file, in(name), EXR_WRITE_FILE_DIRECTLY, NULL), EXR_ERR_SUCCESS);
     assert_int_equal(exr_add_part(file, "p", EXR_STORAGE_SCANLINE, &part), EXR_ERR_SUCCESS);
     assert_int_equal(exr_initialize_required_attr(file, part, &window, &window, 1.0f, &centre, 1.0f, EXR_LINEORDER_INCREASING_Y,
-                                                  EXR_COMPRESSION_NONE), EXR_ERR_SUCCESS);
+                                                  EXR_COMPRESSION_NONE),
+                     EXR_ERR_SUCCESS);
     for (int i = !has_alpha; i < 4; i++)
         assert_int_equal(exr_add_channel(file, part, names[i], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1), EXR_ERR_SUCCESS);
     if (primaries)
@@ -190,8 +191,8 @@ static void test_sixteen(void **state)
     const adcgs_image_store_config config = {.split = ADCGS_SPLIT_TRAIN, .divide = 1};
     for (size_t i = 0; i < ADCGS_COUNTOF(names); i++)
         put_levels(names[i], i % 2 ? 16 : 8, 3, i % 2 ? 65535 : 255);
-    open_frames(FRAMES(FRAME("8.ppm") "," FRAME("8.ppm") "," FRAME("16.ppm") "," FRAME("8.tif") "," FRAME("16.tif") ","
-                       FRAME("8.png") "," FRAME("16.png")));
+    open_frames(FRAMES(FRAME("8.ppm") "," FRAME("8.ppm") "," FRAME("16.ppm") "," FRAME("8.tif") "," FRAME("16.tif") "," FRAME(
+        "8.png") "," FRAME("16.png")));
     assert_int_equal(scene->n_views[ADCGS_SPLIT_TRAIN], ADCGS_COUNTOF(names));
     expect_good(adcgs_pool_create(&pool, 2, &error));
     expect_good(adcgs_image_store_load(&pictures, scene, &config, pool, &error));
@@ -261,9 +262,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_stops, close_scene),
-        cmocka_unit_test_teardown(test_linear, close_scene),   cmocka_unit_test_teardown(test_linear_alpha, close_scene),
-        cmocka_unit_test_teardown(test_labelled, close_scene), cmocka_unit_test_teardown(test_sixteen, close_scene),
-        cmocka_unit_test_teardown(test_sixteen_alpha, close_scene), cmocka_unit_test(test_refused),
+        cmocka_unit_test_teardown(test_linear, close_scene),
+        cmocka_unit_test_teardown(test_linear_alpha, close_scene),
+        cmocka_unit_test_teardown(test_labelled, close_scene),
+        cmocka_unit_test_teardown(test_sixteen, close_scene),
+        cmocka_unit_test_teardown(test_sixteen_alpha, close_scene),
+        cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

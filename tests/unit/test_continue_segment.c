@@ -45,7 +45,7 @@ static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
 /** The model at the end of a run. */
 static void take_model(adcgs_model *model, const adcgs_fmodel *f)
 {
-    const adcgs_quantise_options options = { .cpu = adcgs_cpu_best() };
+    const adcgs_quantise_options options = {.cpu = adcgs_cpu_best()};
     if (adcgs_quantise(model, f, &options, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     model->time_end = scene->duration;
@@ -123,7 +123,7 @@ static void what_is_settled_is_kept(void **state)
 {
     const adcgs_train_config config = follow_config();
     adcgs_model before, model;
-    adcgs_inter kept = { .n = 0 };
+    adcgs_inter kept = {.n = 0};
     (void)state;
     learn(&before, NULL);
     adcgs_trainer *t = make(&config, &before, pool);
@@ -145,7 +145,7 @@ static void what_is_settled_is_kept(void **state)
 /** A run that stops in each stage and is restored, with other threads, ends like one that never stopped. */
 static void stopping_changes_nothing(void **state)
 {
-    static const uint32_t stops[] = { 0, 60, 150, 190 };
+    static const uint32_t stops[] = {0, 60, 150, 190};
     const adcgs_train_config config = follow_config();
     adcgs_model before, other;
     adcgs_buffer end, middle, again;
@@ -224,8 +224,8 @@ static void place(const adcgs_stereo_pose *p, const double pivot[3], const doubl
 /** Pose after t of a body that turns about an axis of its own and flies. */
 static adcgs_stereo_pose truth(int body, double t)
 {
-    static const double turn[2][3] = { { 0.3, -0.8, 0.5 }, { -0.2, 0.1, 0.9 } };
-    static const double way[2][3] = { { 0.2, 0.05, -0.1 }, { -0.3, 0.1, 0 } };
+    static const double turn[2][3] = {{0.3, -0.8, 0.5}, {-0.2, 0.1, 0.9}};
+    static const double way[2][3] = {{0.2, 0.05, -0.1}, {-0.3, 0.1, 0}};
     adcgs_stereo_pose p;
     adcgs_rotation_exp(turn[body], t, p.q);
     for (int a = 0; a < 3; a++)
@@ -242,9 +242,9 @@ enum { FOUND = 3, SEEN = 4 };
  */
 static void bodies_are_found_again(void **state)
 {
-    static const uint32_t pos[][3] = { { 10, 10, 10 }, { 14, 12, 13 }, { 40, 44, 40 }, { 46, 46, 47 } };
-    static const double pivot[3] = { 0.1, -0.2, 0.05 }, zero[3] = { 0, 0, 0 };
-    const float origin[3] = { -0.5f, -0.5f, -0.5f };
+    static const uint32_t pos[][3] = {{10, 10, 10}, {14, 12, 13}, {40, 44, 40}, {46, 46, 47}};
+    static const double pivot[3] = {0.1, -0.2, 0.05}, zero[3] = {0, 0, 0};
+    const float origin[3] = {-0.5f, -0.5f, -0.5f};
     adcgs_train_config c = follow_config();
     adcgs_fmodel *f;
     (void)state;
@@ -260,7 +260,7 @@ static void bodies_are_found_again(void **state)
         adcgs_bodies_set_pose(f, b ? 1 : 3, 0, left.q, zero, left.way);
     }
 
-    adcgs_stereo found = { .n_frames = SEEN, .n_bodies = FOUND, .n_moving = FOUND };
+    adcgs_stereo found = {.n_frames = SEEN, .n_bodies = FOUND, .n_moving = FOUND};
     found.frame_time = adcgs_alloc(NULL, SEEN, sizeof *found.frame_time, &error);
     found.body = adcgs_alloc(NULL, FOUND, sizeof *found.body, &error);
     found.moving = adcgs_alloc(NULL, FOUND, sizeof *found.moving, &error);
@@ -270,15 +270,15 @@ static void bodies_are_found_again(void **state)
         const int b = i == 0 ? 1 : i == 2 ? 0 : -1; /* the one in the middle is new */
         found.body[i].pose = adcgs_alloc(NULL, SEEN, sizeof *found.body[i].pose, &error);
         memcpy(found.body[i].pivot, pivot, sizeof pivot);
-        found.moving[i] = (adcgs_stereo_point){ .x = { 0.4, 0.4, -0.4 }, .moves = 1, .body = (uint8_t)(i + 1) };
+        found.moving[i] = (adcgs_stereo_point){.x = {0.4, 0.4, -0.4}, .moves = 1, .body = (uint8_t)(i + 1)};
         for (int m = 0; m < SEEN; m++) {
             adcgs_stereo_pose *p = &found.body[i].pose[m];
             const adcgs_stereo_pose now = truth(b < 0 ? 0 : b, 1 + m / (SEEN - 1.0)), then = truth(b < 0 ? 0 : b, 1 + 2 / 3.0);
-            const double back[4] = { then.q[0], -then.q[1], -then.q[2], -then.q[3] };
+            const double back[4] = {then.q[0], -then.q[1], -then.q[2], -then.q[3]};
             double at[3];
             /* x rests at T(then) x0 and moves by T(now) T(then)^-1; the translation of that pose is the pivot's. */
-            const adcgs_stereo_pose inverse = { { back[0], back[1], back[2], back[3] }, { 0, 0, 0 } };
-            double moved[3] = { pivot[0] - then.way[0], pivot[1] - then.way[1], pivot[2] - then.way[2] }, x0[3];
+            const adcgs_stereo_pose inverse = {{back[0], back[1], back[2], back[3]}, {0, 0, 0}};
+            double moved[3] = {pivot[0] - then.way[0], pivot[1] - then.way[1], pivot[2] - then.way[2]}, x0[3];
             place(&inverse, zero, moved, x0);
             place(&now, zero, x0, at);
             adcgs_rotation_multiply(now.q, back, p->q);
@@ -287,7 +287,7 @@ static void bodies_are_found_again(void **state)
         }
         if (b >= 0) { /* its point is the centre of its anchors at the first time */
             const float *centre = f->centre[b ? 0 : 2];
-            const double x[3] = { (double)centre[0], (double)centre[1], (double)centre[2] };
+            const double x[3] = {(double)centre[0], (double)centre[1], (double)centre[2]};
             const adcgs_stereo_pose left = truth(b, 1);
             place(&left, zero, x, found.moving[i].x);
         }
@@ -303,7 +303,7 @@ static void bodies_are_found_again(void **state)
         for (int m = 0; m < SEEN; m++) {
             const adcgs_stereo_body *body = &found.body[b ? 0 : 2];
             const adcgs_stereo_pose wanted = truth(b, 1 + m / (SEEN - 1.0));
-            const double x[3] = { 0.03, 0.21, -0.17 };
+            const double x[3] = {0.03, 0.21, -0.17};
             double here[3], there[3];
             place(&body->pose[m], body->pivot, x, here);
             place(&wanted, zero, x, there);
@@ -317,12 +317,9 @@ static void bodies_are_found_again(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(float_models_come_back),
-        cmocka_unit_test(time_begins_where_the_next_does),
-        cmocka_unit_test(what_is_settled_is_kept),
-        cmocka_unit_test(stopping_changes_nothing),
-        cmocka_unit_test(what_has_changed_learns),
-        cmocka_unit_test(bodies_are_found_again),
+        cmocka_unit_test(float_models_come_back),  cmocka_unit_test(time_begins_where_the_next_does),
+        cmocka_unit_test(what_is_settled_is_kept), cmocka_unit_test(stopping_changes_nothing),
+        cmocka_unit_test(what_has_changed_learns), cmocka_unit_test(bodies_are_found_again),
     };
     return cmocka_run_group_tests(tests, open_scene, close_scene);
 }

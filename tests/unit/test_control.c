@@ -16,7 +16,7 @@ static adcgs_train_config config_for(adcgs_train_target target, double value)
     c.start_anchors = 100;
     c.densify_interval = 20;
     c.matching_frames = 0; /* stereo would run again for each trainer; only the stream's size counts here */
-    c.params.n_fg = 8; /* so that a size can be used up */
+    c.params.n_fg = 8;     /* so that a size can be used up */
     c.densify_threshold = 1e-6f;
     c.freeze_start = 0.92f; /* long enough to stop in */
     c.target = target;
@@ -42,8 +42,8 @@ static void plans_grow_with_the_size(void **state)
         widths = sum;
     }
     const adcgs_train_config preset = config_for(ADCGS_TARGET_NONE, 0);
-    assert_int_equal(widths, preset.shape.theta_width + preset.shape.omega_width + preset.shape.varpi_width +
-                                 preset.shape.entropy_width);
+    assert_int_equal(widths,
+                     preset.shape.theta_width + preset.shape.omega_width + preset.shape.varpi_width + preset.shape.entropy_width);
     assert_true(anchors > preset.max_anchors);
 }
 
@@ -85,7 +85,7 @@ static adcgs_status pretended_bytes(void *user, const adcgs_trainer *t, adcgs_by
 {
     (void)t;
     (void)e;
-    *bytes = (adcgs_bytes){ .networks = 10000, .layer = { *(const uint64_t *)user }, .total = 10000 + *(const uint64_t *)user };
+    *bytes = (adcgs_bytes){.networks = 10000, .layer = {*(const uint64_t *)user}, .total = 10000 + *(const uint64_t *)user};
     return ADCGS_OK;
 }
 
@@ -248,7 +248,7 @@ static void runs_land_on_qualities(void **state)
 /** Runs to the end through every stop. Each time a new trainer continues from the stored state. */
 static adcgs_trainer *run_in_pieces(const adcgs_train_config *config)
 {
-    static const uint32_t stops[] = { 50, 70, 130, 180, 190 };
+    static const uint32_t stops[] = {50, 70, 130, 180, 190};
     adcgs_trainer *t = make(config, real_bytes);
     for (size_t i = 0; i < ADCGS_COUNTOF(stops); i++) {
         uint32_t stop = stops[i];
@@ -269,7 +269,7 @@ static adcgs_trainer *run_in_pieces(const adcgs_train_config *config)
 /** A run that stops anywhere and continues from its stored state ends like a run that never stops. */
 static void stopping_changes_nothing(void **state)
 {
-    static const double values[] = { [ADCGS_TARGET_SIZE] = 12000, [ADCGS_TARGET_PSNR] = 22 };
+    static const double values[] = {[ADCGS_TARGET_SIZE] = 12000, [ADCGS_TARGET_PSNR] = 22};
     for (int target = ADCGS_TARGET_SIZE; target <= ADCGS_TARGET_PSNR; target++) {
         adcgs_train_config config = roomy_config((adcgs_train_target)target, values[target]);
         config.max_anchors = 300; /* bytes need not meet the target, only be the same */

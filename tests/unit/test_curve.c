@@ -52,7 +52,7 @@ static void test_bd_rate(void **state)
     assert_log2(difference(line, 4, steep, 4), 57.0 / 8 / 3 - 1.5);
     assert_log2(difference(level, 4, uneven, 4), (6.5 + (7.0 / 6 + 27.0 / 13 - 18.0 / 7 - 5.0 / 2) / 12) / 4);
     assert_log2(difference(level, 4, bent, 4), (0.75 - 4 - 9) / 3);
-    assert_log2(difference(two, 2, later, 2), -0.5);            /* from 30.5 to 31 */
+    assert_log2(difference(two, 2, later, 2), -0.5);             /* from 30.5 to 31 */
     assert_log2(difference(level, 4, three, 3), (0.5 + 10) / 3); /* fewer than four points: lines */
     assert_log2(difference(line, 4, later, 2), -0.5);
 }

@@ -18,14 +18,14 @@
 
 static adcgs_status read_stream(adcgs_stream *stream, const uint8_t *data, size_t bytes, int strict_end, adcgs_error *error)
 {
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .strict_end = strict_end };
-    adcgs_span s = { .next = data, .left = bytes };
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR, .strict_end = strict_end};
+    adcgs_span s = {.next = data, .left = bytes};
     return adcgs_stream_read(stream, adcgs_span_read, &s, &options, NULL, NULL, error);
 }
 
 static void make_bytes(adcgs_stream *stream, adcgs_buffer *bytes, uint32_t segments, uint32_t n, int n_fg, uint64_t seed)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_params params;
     adcgs_random_small_params(&params, n_fg, &seed);
     params.octaves = 1;
@@ -42,7 +42,7 @@ static void make_bytes(adcgs_stream *stream, adcgs_buffer *bytes, uint32_t segme
 /** Every decoded part of a model must be valid and equal the original. */
 static void check_usable(const adcgs_stream *whole, const adcgs_stream *part)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     assert_true(part->n_segments >= 1 && part->n_segments <= whole->n_segments);
     for (uint32_t i = 0; i < part->n_segments; i++) {
         const adcgs_model *a = &whole->segments[i], *b = &part->segments[i];
@@ -225,8 +225,8 @@ static void test_unknown_chunks(void **state)
 /* REQ-STRM-010 */
 static void test_future_head(void **state)
 {
-    static const uint8_t elements[] = { ADCGS_BITSTREAM_MAJOR, 0, ADCGS_BITSTREAM_MINOR, 0, 0, 1, 0, 0, 0, 0, 0,
-                                        0xff, 0xff, 0xff, 0xff };
+    static const uint8_t elements[] =
+        {ADCGS_BITSTREAM_MAJOR, 0, ADCGS_BITSTREAM_MINOR, 0, 0, 1, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff};
     adcgs_stream stream;
     adcgs_buffer bytes;
     adcgs_error error;
@@ -274,8 +274,8 @@ static void test_layers_taken_out(void **state)
 
 static adcgs_status read_layers(adcgs_stream *stream, const adcgs_buffer *bytes, int layers, adcgs_error *error)
 {
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .layers = layers };
-    adcgs_span s = { .next = bytes->data, .left = bytes->size };
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR, .layers = layers};
+    adcgs_span s = {.next = bytes->data, .left = bytes->size};
     return adcgs_stream_read(stream, adcgs_span_read, &s, &options, NULL, NULL, error);
 }
 
@@ -324,9 +324,9 @@ static void test_false_length(void **state)
                                                            second - 4 - ADCGS_SIGNATURE_BYTES - ADCGS_CHUNK_HEADER_BYTES));
     adcgs_store_le32(header + 4, 1U << 30);
     adcgs_store_le32(header + 12, adcgs_crc32c(0, header, 12));
-    adcgs_memory memory = { .limit = 1 << 20 };
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .memory = &memory };
-    adcgs_span s = { .next = bytes.data, .left = bytes.size };
+    adcgs_memory memory = {.limit = 1 << 20};
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR, .memory = &memory};
+    adcgs_span s = {.next = bytes.data, .left = bytes.size};
     assert_int_equal(adcgs_stream_read(&part, adcgs_span_read, &s, &options, NULL, NULL, &error), ADCGS_ERR_TRUNCATED);
     assert_true(memory.peak < 1 << 19 && memory.used == 0);
     adcgs_store_le32(header + 4, (1U << 30) + 1);
@@ -384,10 +384,9 @@ static void test_stream_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cut_anywhere),   cmocka_unit_test(test_slices_before_cut),
-        cmocka_unit_test(test_flip_every_byte), cmocka_unit_test(test_malice),
-        cmocka_unit_test(test_unknown_chunks), cmocka_unit_test(test_future_head), cmocka_unit_test(test_layers_taken_out),
-        cmocka_unit_test(test_layers_left_out), cmocka_unit_test(test_false_length),
+        cmocka_unit_test(test_cut_anywhere),     cmocka_unit_test(test_slices_before_cut), cmocka_unit_test(test_flip_every_byte),
+        cmocka_unit_test(test_malice),           cmocka_unit_test(test_unknown_chunks),    cmocka_unit_test(test_future_head),
+        cmocka_unit_test(test_layers_taken_out), cmocka_unit_test(test_layers_left_out),   cmocka_unit_test(test_false_length),
         cmocka_unit_test(test_stream_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -116,10 +116,9 @@ static void test_segments_by_time(void **state)
 {
     fixture *f = *state;
     const double middle = f->stream.segments[1].time_start;
-    const double times[] = {
-        -5, 0, nextafter(middle, 0), middle, f->stream.segments[1].time_end, f->stream.segments[2].time_start, 1e9, NAN
-    };
-    const int expected[] = { 0, 0, 0, 1, 1, 2, 2, 0 };
+    const double times[] =
+        {-5, 0, nextafter(middle, 0), middle, f->stream.segments[1].time_end, f->stream.segments[2].time_start, 1e9, NAN};
+    const int expected[] = {0, 0, 0, 1, 1, 2, 2, 0};
     adcgs_config config;
     adcgs_config_init(&config, sizeof config);
     for (config.layers = 0; config.layers < 2; config.layers++) {
@@ -146,9 +145,9 @@ static void test_digests(void **state)
     fixture *f = *state;
     adcgs_decoder *d = open_with(f, NULL);
     const adcgs_model *m = &f->stream.segments[1];
-    const double times[] = { 0, m->time_start, m->time_end };
-    float rgb[] = { 1.0f, -0.0f, 0.5f };
-    const adcgs_frame frame = { 1, 1, rgb };
+    const double times[] = {0, m->time_start, m->time_end};
+    float rgb[] = {1.0f, -0.0f, 0.5f};
+    const adcgs_frame frame = {1, 1, rgb};
     adcgs_primitives p;
     uint8_t found[3][16], expected[16];
     adcgs_md5 md5;
@@ -175,7 +174,7 @@ static void test_frames(void **state)
     const size_t n = 3 * FIXTURE_PIXELS;
     float *first = malloc(n * sizeof *first), *other = malloc(n * sizeof *other);
     uint8_t *bytes = malloc(n);
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     assert_true(first && other && bytes);
     for (int threads = 1; threads <= 7; threads += 3)
         for (int cpu = ADCGS_CPU_SCALAR; cpu <= (int)adcgs_cpu_best(); cpu++) {
@@ -184,7 +183,7 @@ static void test_frames(void **state)
             config.threads = threads;
             config.cpu = (adcgs_cpu_level)cpu;
             adcgs_decoder *d = open_with(f, &config);
-            adcgs_frame frame = { FIXTURE_WIDTH, FIXTURE_HEIGHT, threads == 1 && cpu == 1 ? first : other };
+            adcgs_frame frame = {FIXTURE_WIDTH, FIXTURE_HEIGHT, threads == 1 && cpu == 1 ? first : other};
             if (adcgs_render(d, &fixture_camera, 0.045, &frame, &error) != ADCGS_OK)
                 fail_msg("%s", error.text);
             if (frame.rgb == other)
@@ -197,7 +196,7 @@ static void test_frames(void **state)
     for (size_t i = 0; i < n; i += 3)
         drawn += first[i] != 0.5f;
     assert_true(drawn > 50);
-    const adcgs_frame frame = { FIXTURE_WIDTH, FIXTURE_HEIGHT, first };
+    const adcgs_frame frame = {FIXTURE_WIDTH, FIXTURE_HEIGHT, first};
     first[0] = -1;
     first[1] = 2;
     first[2] = 0.5f;
@@ -211,9 +210,8 @@ static void test_frames(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_info),   cmocka_unit_test(test_sources),         cmocka_unit_test(test_config),
-        cmocka_unit_test(test_frames), cmocka_unit_test(test_segments_by_time),
-        cmocka_unit_test(test_digests),
+        cmocka_unit_test(test_info),   cmocka_unit_test(test_sources),          cmocka_unit_test(test_config),
+        cmocka_unit_test(test_frames), cmocka_unit_test(test_segments_by_time), cmocka_unit_test(test_digests),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -96,7 +96,13 @@ static void test_sums(void **state)
 
 /* ---- The decoder ---- */
 
-static const adcgs_camera eye = {.width = WIDTH, .height = HEIGHT, .fx = 60, .fy = 60, .cx = 30, .cy = 23, .near_plane = 0.1,
+static const adcgs_camera eye = {.width = WIDTH,
+                                 .height = HEIGHT,
+                                 .fx = 60,
+                                 .fy = 60,
+                                 .cx = 30,
+                                 .cy = 23,
+                                 .near_plane = 0.1,
                                  .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0.75, 0, 0, 1, -9}};
 
 static void make_stream(adcgs_stream *stream, adcgs_buffer *bytes, uint32_t anchors)
@@ -118,9 +124,9 @@ static void make_stream(adcgs_stream *stream, adcgs_buffer *bytes, uint32_t anch
 static scene_splats copy_primitives(const adcgs_primitives *p)
 {
     scene_splats s = scene_create(p->n);
-    const float *const arrays[SCENE_ARRAYS] = {p->mean[0],     p->mean[1],     p->mean[2],     p->scale[0],    p->scale[1],
-                                               p->scale[2],    p->rotation[0], p->rotation[1], p->rotation[2], p->rotation[3],
-                                               p->opacity,     p->colour[0],   p->colour[1],   p->colour[2]};
+    const float *const arrays[SCENE_ARRAYS] = {p->mean[0],  p->mean[1],     p->mean[2],     p->scale[0],    p->scale[1],
+                                               p->scale[2], p->rotation[0], p->rotation[1], p->rotation[2], p->rotation[3],
+                                               p->opacity,  p->colour[0],   p->colour[1],   p->colour[2]};
     for (int a = 0; a < SCENE_ARRAYS; a++)
         memcpy(scene_array(&s, a), arrays[a], p->n * sizeof(float));
     return s;

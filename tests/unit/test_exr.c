@@ -16,15 +16,15 @@
 #define PIXELS (WIDTH * HEIGHT)
 
 static float rgb[3 * PIXELS], alpha[PIXELS], depth[PIXELS];
-static adcgs_camera camera = {.width = WIDTH, .height = HEIGHT, .fx = 40.0, .fy = 44.0, .cx = 17.0, .cy = 12.5,
-                              .near_plane = 0.25, .name = "eye"};
+static adcgs_camera camera =
+    {.width = WIDTH, .height = HEIGHT, .fx = 40.0, .fy = 44.0, .cx = 17.0, .cy = 12.5, .near_plane = 0.25, .name = "eye"};
 
 /** Premultiplied colours; a camera turned about two axes. */
 static void fill(void)
 {
     const double a = 0.7, b = -0.4;
-    const double pose[12] = {cos(a), -sin(a) * cos(b), sin(a) * sin(b),  1.5, sin(a), cos(a) * cos(b),
-                             -cos(a) * sin(b), -2.0,   0.0,              sin(b), cos(b), 0.75};
+    const double pose[12] = {cos(a), -sin(a) * cos(b), sin(a) * sin(b), 1.5, sin(a), cos(a) * cos(b), -cos(a) * sin(b), -2.0,
+                             0.0,    sin(b),           cos(b),          0.75};
     memcpy(camera.cam_to_world, pose, sizeof pose);
     for (int i = 0; i < PIXELS; i++) {
         alpha[i] = (float)(i % 11) / 10.0f;
@@ -37,8 +37,14 @@ static void fill(void)
 static adcgs_status write_curve(const char *name, adcgs_depth kind, int has_alpha, int has_z, int linear)
 {
     const adcgs_frame frame = {WIDTH, HEIGHT, rgb};
-    const adcgs_sink_config config = {.target = in(name), .depth = kind, .linear = linear, .width = WIDTH, .height = HEIGHT,
-                                      .frames = 1, .has_alpha = has_alpha, .has_z = has_z};
+    const adcgs_sink_config config = {.target = in(name),
+                                      .depth = kind,
+                                      .linear = linear,
+                                      .width = WIDTH,
+                                      .height = HEIGHT,
+                                      .frames = 1,
+                                      .has_alpha = has_alpha,
+                                      .has_z = has_z};
     const adcgs_sink_extras extras = {has_alpha ? alpha : NULL, has_z ? depth : NULL, &camera, 1.25};
     adcgs_sink *sink;
     ADCGS_TRY(adcgs_sink_open(&sink, &config, &error));
@@ -376,13 +382,9 @@ static void test_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_channels),
-        cmocka_unit_test(test_linear),
-        cmocka_unit_test(test_linear_straight),
-        cmocka_unit_test(test_attributes), cmocka_unit_test(test_aspect),
-        cmocka_unit_test(test_curve_named),
-        cmocka_unit_test(test_sixteen_bits),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_channels),     cmocka_unit_test(test_linear),  cmocka_unit_test(test_linear_straight),
+        cmocka_unit_test(test_attributes),   cmocka_unit_test(test_aspect),  cmocka_unit_test(test_curve_named),
+        cmocka_unit_test(test_sixteen_bits), cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

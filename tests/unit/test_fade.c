@@ -19,11 +19,17 @@
 
 enum { SEGMENTS = 7, WIDTH = 31, HEIGHT = 23, PIXELS = WIDTH * HEIGHT, VALUES = 3 * PIXELS, TIMES = 150 };
 
-static const adcgs_camera camera = { .width = WIDTH, .height = HEIGHT, .fx = 25, .fy = 25, .cx = 15, .cy = 11, .near_plane = 0.1,
-                                     .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -12 } };
+static const adcgs_camera camera = {.width = WIDTH,
+                                    .height = HEIGHT,
+                                    .fx = 25,
+                                    .fy = 25,
+                                    .cx = 15,
+                                    .cy = 11,
+                                    .near_plane = 0.1,
+                                    .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -12}};
 
 /** Crossfade of each segment in ticks: a whole segment, none, longer than the segment, one tick, others. */
-static const int reach[SEGMENTS] = { 40, 0, 90, 1, 12, 20, 33 };
+static const int reach[SEGMENTS] = {40, 0, 90, 1, 12, 20, 33};
 
 static float drawn_alone[2][VALUES], expected[TIMES][VALUES];
 
@@ -101,8 +107,8 @@ static int setup(void **state)
 
 static void draw(adcgs_decoder *d, double time, float *out)
 {
-    adcgs_error error = { ADCGS_OK, "" };
-    adcgs_frame frame = { WIDTH, HEIGHT, out };
+    adcgs_error error = {ADCGS_OK, ""};
+    adcgs_frame frame = {WIDTH, HEIGHT, out};
     if (adcgs_render(d, &camera, time, &frame, &error) != ADCGS_OK)
         fail_msg("at %g: %s", time, error.text);
 }
@@ -182,7 +188,7 @@ static void play_pushed(const fixture *f, int forgets)
     for (size_t at = 0; at < f->bytes.size;) {
         size_t used;
         adcgs_arrival arrived;
-        adcgs_info info = { .time_committed = -INFINITY };
+        adcgs_info info = {.time_committed = -INFINITY};
         assert_int_equal(adcgs_push(d, f->bytes.data + at, f->bytes.size - at, &used, &arrived, NULL), ADCGS_OK);
         at += used;
         adcgs_get_info(d, &info, sizeof info, NULL);
@@ -281,7 +287,7 @@ static void test_kinds(void **state)
     const fixture *f = *state;
     static float found[VALUES], alpha[PIXELS], depth[PIXELS];
     static uint8_t rgba[3][4 * PIXELS], rgb[VALUES];
-    const adcgs_frame frame = { WIDTH, HEIGHT, found };
+    const adcgs_frame frame = {WIDTH, HEIGHT, found};
     adcgs_decoder *d = NULL;
     float weight;
     int between = 0;
@@ -332,9 +338,8 @@ static void test_splats(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_frames), cmocka_unit_test(test_seek),  cmocka_unit_test(test_push),
-        cmocka_unit_test(test_lost),   cmocka_unit_test(test_joined), cmocka_unit_test(test_kinds),
-        cmocka_unit_test(test_splats),
+        cmocka_unit_test(test_frames), cmocka_unit_test(test_seek),  cmocka_unit_test(test_push),   cmocka_unit_test(test_lost),
+        cmocka_unit_test(test_joined), cmocka_unit_test(test_kinds), cmocka_unit_test(test_splats),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -40,7 +40,7 @@ static int setup(void **state)
 
 static shown state_of(adcgs_decoder *d)
 {
-    shown s = { .segments = 0 };
+    shown s = {.segments = 0};
     adcgs_info info;
     s.info_status = adcgs_get_info(d, &info, sizeof info, NULL);
     for (int i = 0; i < TIMES; i++)
@@ -181,7 +181,7 @@ static void test_bytes_that_change(void **state)
     const fixture *f = *state;
     const size_t size = f->bytes.size;
     uint8_t *other = malloc(size);
-    source s = { f->bytes.data };
+    source s = {f->bytes.data};
     adcgs_decoder *d = open_at(&s, size);
     const shown expected = state_of(d);
     adcgs_found_chunk c;
@@ -213,7 +213,7 @@ static void test_index_of_other_times(void **state)
     const fixture *f = *state;
     const size_t size = f->bytes.size, index = size - 32 - 4 - 37 * SEGMENTS;
     uint8_t *other = malloc(size);
-    source s = { f->bytes.data };
+    source s = {f->bytes.data};
     adcgs_decoder *d = open_at(&s, size);
     const shown expected = state_of(d);
     adcgs_close(&d);

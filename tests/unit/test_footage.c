@@ -42,8 +42,8 @@ static adcgs_thumbnail *add_view(int camera, double time, double brighter)
     adcgs_thumbnail *const thumbnail = &film.thumbnails[film.n];
     assert_true(film.n < MOST);
     snprintf(film.names[film.n], sizeof film.names[0], "%u", film.n);
-    *view = (adcgs_scene_view){.camera = {.width = 64, .height = 64, .fx = 50.0 + camera}, .time = time,
-                               .path = film.names[film.n]};
+    *view =
+        (adcgs_scene_view){.camera = {.width = 64, .height = 64, .fx = 50.0 + camera}, .time = time, .path = film.names[film.n]};
     for (int i = 0; i < ADCGS_THUMBNAIL_CELLS; i++)
         thumbnail->cells[i] = (float)(0.3 + 0.3 * ((i * (camera + 7) * 37) % 101) / 101.0 + brighter);
     for (int i = 0; i < ADCGS_THUMBNAIL_TINTS; i++)
@@ -65,11 +65,21 @@ static adcgs_fault find(char which)
     adcgs_scene scene = {.directory = "here", .views = {film.views}, .n_views = {film.n}};
     assert_int_equal(adcgs_camera_order_find(&tracks, film.views, film.n, &error), ADCGS_OK);
     switch (which) {
-    case 'g': status = adcgs_fault_gaps(&fault, &scene, &error); break;
-    case 'd': adcgs_fault_duplicates(&fault, NULL, film.views, &tracks, film.thumbnails); break;
-    case 'x': status = adcgs_fault_copied(&fault, film.views, &tracks, film.thumbnails, &error); break;
-    case 'l': status = adcgs_fault_light(&fault, NULL, film.views, &tracks, film.thumbnails, &error); break;
-    default: status = adcgs_fault_clocks(&fault, film.views, &tracks, film.thumbnails, &error); break;
+    case 'g':
+        status = adcgs_fault_gaps(&fault, &scene, &error);
+        break;
+    case 'd':
+        adcgs_fault_duplicates(&fault, NULL, film.views, &tracks, film.thumbnails);
+        break;
+    case 'x':
+        status = adcgs_fault_copied(&fault, film.views, &tracks, film.thumbnails, &error);
+        break;
+    case 'l':
+        status = adcgs_fault_light(&fault, NULL, film.views, &tracks, film.thumbnails, &error);
+        break;
+    default:
+        status = adcgs_fault_clocks(&fault, film.views, &tracks, film.thumbnails, &error);
+        break;
     }
     assert_int_equal(status, ADCGS_OK);
     assert_true(fault.cameras <= fault.of && isfinite(fault.from) && isfinite(fault.to) && isfinite(fault.size));
@@ -652,17 +662,27 @@ static void what_is_masked_does_not_count(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(of_little_nothing_is_said),          cmocka_unit_test(what_is_not_known_says_nothing),
-        cmocka_unit_test(gaps_are_found),                     cmocka_unit_test(gaps_of_all_are_the_scenes),
-        cmocka_unit_test(what_was_put_aside_is_no_gap),       cmocka_unit_test(doubled_pictures_are_found),
+        cmocka_unit_test(of_little_nothing_is_said),
+        cmocka_unit_test(what_is_not_known_says_nothing),
+        cmocka_unit_test(gaps_are_found),
+        cmocka_unit_test(gaps_of_all_are_the_scenes),
+        cmocka_unit_test(what_was_put_aside_is_no_gap),
+        cmocka_unit_test(doubled_pictures_are_found),
         cmocka_unit_test(doubled_pictures_are_of_the_time_before),
-        cmocka_unit_test(what_turns_may_rest),                cmocka_unit_test(doubled_pictures_of_one_that_moves),
-        cmocka_unit_test(pictures_of_others_are_found),       cmocka_unit_test(what_all_see_is_no_copy),
-        cmocka_unit_test(steps_of_light_are_found),           cmocka_unit_test(what_moves_is_no_light),
-        cmocka_unit_test(steps_of_light_are_evened),          cmocka_unit_test(what_is_evened_adds_up),
-        cmocka_unit_test(light_that_changes_all_the_time),    cmocka_unit_test(the_greatest_step_is_told),
-        cmocka_unit_test(clocks_that_are_off_are_found),      cmocka_unit_test(too_little_tells_no_clock),
-        cmocka_unit_test(what_repeats_tells_no_clock),        cmocka_unit_test(what_moves_as_it_likes_has_no_fault),
+        cmocka_unit_test(what_turns_may_rest),
+        cmocka_unit_test(doubled_pictures_of_one_that_moves),
+        cmocka_unit_test(pictures_of_others_are_found),
+        cmocka_unit_test(what_all_see_is_no_copy),
+        cmocka_unit_test(steps_of_light_are_found),
+        cmocka_unit_test(what_moves_is_no_light),
+        cmocka_unit_test(steps_of_light_are_evened),
+        cmocka_unit_test(what_is_evened_adds_up),
+        cmocka_unit_test(light_that_changes_all_the_time),
+        cmocka_unit_test(the_greatest_step_is_told),
+        cmocka_unit_test(clocks_that_are_off_are_found),
+        cmocka_unit_test(too_little_tells_no_clock),
+        cmocka_unit_test(what_repeats_tells_no_clock),
+        cmocka_unit_test(what_moves_as_it_likes_has_no_fault),
         cmocka_unit_test(what_is_masked_does_not_count),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -39,7 +39,7 @@ static double check_cloud(const uint32_t *voxels, uint32_t n, int depth)
 {
     adcgs_buffer b;
     adcgs_buffer_init(&b);
-    adcgs_error error = { 0 };
+    adcgs_error error = {0};
     if (adcgs_geom_encode(&b, voxels, n, depth, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     uint32_t *back = make_voxels(n);
@@ -57,7 +57,7 @@ static double check_cloud(const uint32_t *voxels, uint32_t n, int depth)
 static void test_logistic_equals_csv(void **state)
 {
     (void)state;
-    static const int stretch[] = { LOGISTIC_STRETCH }, squash[] = { LOGISTIC_SQUASH };
+    static const int stretch[] = {LOGISTIC_STRETCH}, squash[] = {LOGISTIC_SQUASH};
     const char *top = getenv("srcdir");
     char path[4096], line[100];
     snprintf(path, sizeof path, "%s/spec/tables/logistic.csv", top ? top : ".");
@@ -93,7 +93,7 @@ static void test_sorting(void **state)
     }
     memcpy(voxels, voxels + 3, 12);
     assert_int_equal(adcgs_morton_sort(voxels, n, NULL, NULL), 1);
-    static const uint32_t corner[3] = { 0x1fffff, 0x1fffff, 0x1fffff }, x[3] = { 1, 0, 0 }, z[3] = { 0, 0, 0x100000 };
+    static const uint32_t corner[3] = {0x1fffff, 0x1fffff, 0x1fffff}, x[3] = {1, 0, 0}, z[3] = {0, 0, 0x100000};
     assert_true(adcgs_morton(corner) == (UINT64_C(1) << 63) - 1);
     assert_true(adcgs_morton(x) == 4 && adcgs_morton(z) == UINT64_C(1) << 60);
     assert_int_equal(adcgs_morton_sort(voxels, 0, NULL, NULL), 0);
@@ -108,7 +108,7 @@ static void test_single_points(void **state)
     (void)state;
     for (int depth = 0; depth <= 21; depth++) {
         const uint32_t top = (1u << depth) - 1;
-        const uint32_t points[][3] = { { 0, 0, 0 }, { top, top, top }, { top, 0, top / 2 }, { top / 3, top, 0 } };
+        const uint32_t points[][3] = {{0, 0, 0}, {top, top, top}, {top, 0, top / 2}, {top / 3, top, 0}};
         for (size_t i = 0; i < ADCGS_COUNTOF(points); i++)
             assert_true(check_cloud(points[i], 1, depth) <= 3 * depth + 7);
     }
@@ -142,7 +142,7 @@ static void test_full_cubes(void **state)
 static void test_random_clouds(void **state)
 {
     (void)state;
-    static const uint32_t sizes[] = { 2, 3, 17, 300, 5000 };
+    static const uint32_t sizes[] = {2, 3, 17, 300, 5000};
     uint64_t seed = 2;
     for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++)
         for (int depth = 1; depth <= 21; depth += i < 4 ? 1 : 5) {
@@ -210,7 +210,7 @@ static void test_surface_is_predicted(void **state)
 static void test_wrong_use(void **state)
 {
     (void)state;
-    static const uint32_t twice[] = { 1, 1, 1, 1, 1, 1 }, unsorted[] = { 1, 0, 0, 0, 0, 1 }, outside[] = { 0, 4, 0 };
+    static const uint32_t twice[] = {1, 1, 1, 1, 1, 1}, unsorted[] = {1, 0, 0, 0, 0, 1}, outside[] = {0, 4, 0};
     adcgs_buffer b;
     adcgs_buffer_init(&b);
     assert_int_equal(adcgs_geom_encode(&b, twice, 2, 3, NULL), ADCGS_ERR_USAGE);
@@ -273,11 +273,9 @@ static void test_hostile_data(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_logistic_equals_csv),
-        cmocka_unit_test(test_sorting),       cmocka_unit_test(test_single_points),
-        cmocka_unit_test(test_full_cubes),    cmocka_unit_test(test_random_clouds),
-        cmocka_unit_test(test_colliding_cells), cmocka_unit_test(test_surface_is_predicted),
-        cmocka_unit_test(test_wrong_use),     cmocka_unit_test(test_hostile_data),
+        cmocka_unit_test(test_logistic_equals_csv),  cmocka_unit_test(test_sorting),       cmocka_unit_test(test_single_points),
+        cmocka_unit_test(test_full_cubes),           cmocka_unit_test(test_random_clouds), cmocka_unit_test(test_colliding_cells),
+        cmocka_unit_test(test_surface_is_predicted), cmocka_unit_test(test_wrong_use),     cmocka_unit_test(test_hostile_data),
     };
     return cmocka_run_group_tests_name("geom", tests, NULL, NULL);
 }

@@ -81,15 +81,111 @@ static size_t make(uint8_t *to, const char *text, const uint8_t *numbers, size_t
     "{\"bufferView\":" #view ",\"componentType\":" #kind ",\"normalized\":true,\"count\":2,\"type\":\"" type "\"}"
 static const char good[] =
     "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"" NAME "\"],\"buffers\":[{\"byteLength\":134}],\"bufferViews\":["
-    "{\"buffer\":0,\"byteLength\":28,\"byteStride\":16}," VIEW(28, 16) "," VIEW(44, 6) "," VIEW(50, 4) "," VIEW(54, 32)
-    "," VIEW(86, 48) "],\"accessors\":[" ACCESSOR(0, 5126, "VEC3") "," NORMAL(1, 5122, "VEC4") "," NORMAL(2, 5121, "VEC3")
-    "," NORMAL(3, 5123, "SCALAR") ",{\"bufferView\":4,\"byteOffset\":8,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"},"
-    ACCESSOR(5, 5126, "VEC3") ",{\"bufferView\":5,\"byteOffset\":24,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"}],"
-    "\"nodes\":[{\"children\":[1]},{\"mesh\":1,\"scale\":[1,1,1],\"rotation\":[0,0,0,1]}],"
-    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":7}}]},{\"primitives\":[{\"attributes\":{"
-    "\"POSITION\":0,\"" NAME ":ROTATION\":1,\"" NAME ":SCALE\":2,\"" NAME ":OPACITY\":3,\"" NAME ":SH_DEGREE_0_COEF_0\":4,\""
-    NAME ":SH_DEGREE_1_COEF_0\":5,\"" NAME ":SH_DEGREE_1_COEF_1\":5,\"" NAME ":SH_DEGREE_1_COEF_2\":6},\"mode\":0,"
-    "\"extensions\":{\"" NAME "\":{\"kernel\":\"ellipse\",\"colorSpace\":\"srgb_rec709_display\"}}}]}]}";
+    "{\"buffer\":0,\"byteLength\":28,\"byteStride\":16}," VIEW(28, 16) "," VIEW(44, 6) "," VIEW(50, 4) "," VIEW(54, 32) "," VIEW(
+        86,
+        48) "],\"accessors\":[" ACCESSOR(0, 5126,
+                                         "VEC3") "," NORMAL(1, 5122,
+                                                            "VEC4") "," NORMAL(2, 5121,
+                                                                               "VEC3") "," NORMAL(3, 5123,
+                                                                                                  "SCALAR") ",{\"bufferView\":4,"
+                                                                                                            "\"byteOffset\":8,"
+                                                                                                            "\"componentType\":"
+                                                                                                            "5126,\"count\":2,"
+                                                                                                            "\"type\":\"VEC3\"}"
+                                                                                                            "," ACCESSOR(
+                                                                                                                5, 5126,
+                                                                                                                "VEC3") ",{"
+                                                                                                                        "\"buffer"
+                                                                                                                        "View\":"
+                                                                                                                        "5,"
+                                                                                                                        "\"byteOf"
+                                                                                                                        "fset\":"
+                                                                                                                        "24,"
+                                                                                                                        "\"compon"
+                                                                                                                        "entType"
+                                                                                                                        "\":5126,"
+                                                                                                                        "\"count"
+                                                                                                                        "\":2,"
+                                                                                                                        "\"type\""
+                                                                                                                        ":\"VEC3"
+                                                                                                                        "\"}],"
+                                                                                                                        "\"nodes"
+                                                                                                                        "\":[{"
+                                                                                                                        "\"childr"
+                                                                                                                        "en\":[1]"
+                                                                                                                        "},{"
+                                                                                                                        "\"mesh\""
+                                                                                                                        ":1,"
+                                                                                                                        "\"scale"
+                                                                                                                        "\":[1,1,"
+                                                                                                                        "1],"
+                                                                                                                        "\"rotati"
+                                                                                                                        "on\":[0,"
+                                                                                                                        "0,0,1]}]"
+                                                                                                                        ","
+                                                                                                                        "\"meshes"
+                                                                                                                        "\":[{"
+                                                                                                                        "\"primit"
+                                                                                                                        "ives\":["
+                                                                                                                        "{"
+                                                                                                                        "\"attrib"
+                                                                                                                        "utes\":{"
+                                                                                                                        "\"POSITI"
+                                                                                                                        "ON\":7}}"
+                                                                                                                        "]},{"
+                                                                                                                        "\"primit"
+                                                                                                                        "ives\":["
+                                                                                                                        "{"
+                                                                                                                        "\"attrib"
+                                                                                                                        "utes\":{"
+                                                                                                                        "\"POSITI"
+                                                                                                                        "ON\":0,"
+                                                                                                                        "\"" NAME
+                                                                                                                        ":ROTATIO"
+                                                                                                                        "N\":1,"
+                                                                                                                        "\"" NAME
+                                                                                                                        ":SCALE\""
+                                                                                                                        ":2,"
+                                                                                                                        "\"" NAME
+                                                                                                                        ":OPACITY"
+                                                                                                                        "\":3,"
+                                                                                                                        "\"" NAME
+                                                                                                                        ":SH_"
+                                                                                                                        "DEGREE_"
+                                                                                                                        "0_COEF_"
+                                                                                                                        "0\":4,"
+                                                                                                                        "\"" NAME
+                                                                                                                        ":SH_"
+                                                                                                                        "DEGREE_"
+                                                                                                                        "1_COEF_"
+                                                                                                                        "0\":5,"
+                                                                                                                        "\"" NAME
+                                                                                                                        ":SH_"
+                                                                                                                        "DEGREE_"
+                                                                                                                        "1_COEF_"
+                                                                                                                        "1\":5,"
+                                                                                                                        "\"" NAME
+                                                                                                                        ":SH_"
+                                                                                                                        "DEGREE_"
+                                                                                                                        "1_COEF_"
+                                                                                                                        "2\":6},"
+                                                                                                                        "\"mode\""
+                                                                                                                        ":0,"
+                                                                                                                        "\"extens"
+                                                                                                                        "ions\":{"
+                                                                                                                        "\"" NAME
+                                                                                                                        "\":{"
+                                                                                                                        "\"kernel"
+                                                                                                                        "\":"
+                                                                                                                        "\"ellips"
+                                                                                                                        "e\","
+                                                                                                                        "\"colorS"
+                                                                                                                        "pace\":"
+                                                                                                                        "\"srgb_"
+                                                                                                                        "rec709_"
+                                                                                                                        "display"
+                                                                                                                        "\"}}}]}]"
+                                                                                                                        "}";
 
 static void put_floats(uint8_t *to, const float *values, size_t n)
 {
@@ -100,10 +196,10 @@ static void put_floats(uint8_t *to, const float *values, size_t n)
 static void fill_numbers(uint8_t numbers[134])
 {
     static const float first[3] = {1, 2, 3}, second[3] = {-4, 5, 6}, dc[6] = {0, 1, -1, 2, 0.5f, 0}, last[6] = {1, 2, 3, 4, 5, 6};
-    static const uint8_t rest[] = {0,    0,    0,   0, 0,    0,    255, 127,  /* rotations: w is 1 */
-                                   0,    128,  0,   0, 0,    0,    1,   0,    /* x is -1, rounded twice */
-                                   255,  51,   1,   0, 128,  2,              /* scales */
-                                   255,  255,  51,  51};                      /* opacities: 1, 0.2 */
+    static const uint8_t rest[] = {0,   0,   0,  0, 0,   0, 255, 127, /* rotations: w is 1 */
+                                   0,   128, 0,  0, 0,   0, 1,   0,   /* x is -1, rounded twice */
+                                   255, 51,  1,  0, 128, 2,           /* scales */
+                                   255, 255, 51, 51};                 /* opacities: 1, 0.2 */
     memset(numbers, 0, 134);
     put_floats(numbers, first, 3);
     put_floats(numbers + 16, second, 3);
@@ -150,9 +246,9 @@ static void make_splats(adcgs_splats *s)
 static void covariance(const adcgs_splats *s, uint32_t i, double out[9])
 {
     const double w = s->rotation[0][i], x = s->rotation[1][i], y = s->rotation[2][i], z = s->rotation[3][i];
-    const double r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-                         2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                         2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+    const double r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+                         2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                         2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
     for (int a = 0; a < 9; a++) {
         out[a] = 0.0;
         for (int k = 0; k < 3; k++)
@@ -232,7 +328,8 @@ static void test_nodes(void **state)
     adcgs_splats s;
     fill_numbers(numbers);
     const char *const parent = strstr(good, "{\"children\":[1]}"), *const child = strstr(good, "\"scale\":[1,1,1]");
-    snprintf(text, sizeof text, "%.*s{\"children\":[1],\"matrix\":[2,0,0,0,0,2,0,0,0,0,2,0,10,20,30,1]}%.*s"
+    snprintf(text, sizeof text,
+             "%.*s{\"children\":[1],\"matrix\":[2,0,0,0,0,2,0,0,0,0,2,0,10,20,30,1]}%.*s"
              "\"translation\":[1,0,0],\"rotation\":[0,0,0.7071067811865476,0.7071067811865476],\"q\":[0,0,0,1]%s",
              (int)(parent - good), good, (int)(child - parent - 16), parent + 16, strstr(child, "}"));
     const size_t bytes = make(file, text, numbers, sizeof numbers);
@@ -322,8 +419,9 @@ static void test_many_nodes(void **state)
 {
 #define BESIDE "\"nodes\":[{\"mesh\":1,\"translation\":[3,0,0]},{\"mesh\":1},{\"mesh\":1,\"translation\":[0,9,0]}]"
 #define NODES "\"nodes\":[{\"children\":[1]},{\"mesh\":1,\"scale\":[1,1,1],\"rotation\":[0,0,0,1]}]"
-#define FLOATS "{\"attributes\":{\"POSITION\":0,\"" NAME ":ROTATION\":1,\"" NAME ":SCALE\":2,\"" NAME ":OPACITY\":3,\"" \
-    NAME ":SH_DEGREE_0_COEF_0\":4},\"mode\":0,\"extensions\":{\"" NAME "\":{}}}"
+#define FLOATS                                                                                                    \
+    "{\"attributes\":{\"POSITION\":0,\"" NAME ":ROTATION\":1,\"" NAME ":SCALE\":2,\"" NAME ":OPACITY\":3,\"" NAME \
+    ":SH_DEGREE_0_COEF_0\":4},\"mode\":0,\"extensions\":{\"" NAME "\":{}}}"
     uint8_t file[4096];
     adcgs_splats s;
     size_t bytes = change(file, NODES, BESIDE);
@@ -468,8 +566,8 @@ static void test_bad_numbers(void **state)
         s.opacity[0] = 1.5f;
         expect_good(write_splats(&s, in("b.glb")));
         adcgs_splats_free(&s);
-        expect_error(adcgs_splats_read(&s, in("b.glb"), &error), ADCGS_ERR_DATA, "b.glb: ",
-                     k == 2 ? "OPACITY: expected a number from 0 to 1" : "SCALE: expected numbers from 0 to e^80");
+        expect_error(adcgs_splats_read(&s, in("b.glb"), &error), ADCGS_ERR_DATA,
+                     "b.glb: ", k == 2 ? "OPACITY: expected a number from 0 to 1" : "SCALE: expected numbers from 0 to e^80");
     }
 }
 
@@ -480,8 +578,11 @@ static void test_damage(void **state)
         size_t at;
         uint8_t value;
         const char *what;
-    } cases[] = {{4, 1, "the header of version 2"}, {8, 3, "bytes by its header"}, {11, 255, "bytes by its header"},
-                 {14, 255, "a chunk of"}, {16, 'K', "the first chunk is not JSON"}};
+    } cases[] = {{4, 1, "the header of version 2"},
+                 {8, 3, "bytes by its header"},
+                 {11, 255, "bytes by its header"},
+                 {14, 255, "a chunk of"},
+                 {16, 'K', "the first chunk is not JSON"}};
     uint8_t numbers[134], file[4096], part[4096];
     adcgs_splats s;
     fill_numbers(numbers);
@@ -546,10 +647,10 @@ static void test_splat_transform(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip),  cmocka_unit_test(test_kinds),  cmocka_unit_test(test_bad_text),
-        cmocka_unit_test(test_moves),       cmocka_unit_test(test_nodes), cmocka_unit_test(test_packed),
-        cmocka_unit_test(test_many_nodes),  cmocka_unit_test(test_too_many_nodes),
-        cmocka_unit_test(test_bad_numbers), cmocka_unit_test(test_damage), cmocka_unit_test(test_splat_transform),
+        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_kinds),           cmocka_unit_test(test_bad_text),
+        cmocka_unit_test(test_moves),      cmocka_unit_test(test_nodes),           cmocka_unit_test(test_packed),
+        cmocka_unit_test(test_many_nodes), cmocka_unit_test(test_too_many_nodes),  cmocka_unit_test(test_bad_numbers),
+        cmocka_unit_test(test_damage),     cmocka_unit_test(test_splat_transform),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

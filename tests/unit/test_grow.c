@@ -23,7 +23,7 @@ typedef struct fixture {
     adcgs_stream stream;
     adcgs_buffer whole, grown;
     size_t at[SEGMENTS + 1]; /* offsets of the segments in grown, and the end of the last */
-    adcgs_buffer head; /* of grown, settled */
+    adcgs_buffer head;       /* of grown, settled */
 } fixture;
 
 /** The data shared by all segments, without the segments. */
@@ -70,8 +70,14 @@ static int setup(void **state)
     s->slice_log2 = ADCGS_SLICE_LOG2_MIN;
     s->cameras = adcgs_alloc(NULL, 1, sizeof *s->cameras, NULL);
     s->n_cameras = 1;
-    s->cameras[0] = (adcgs_camera){ .width = 8, .height = 8, .fx = 8, .fy = 8, .cx = 4, .cy = 4, .near_plane = 0.1,
-                                    .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3 } };
+    s->cameras[0] = (adcgs_camera){.width = 8,
+                                   .height = 8,
+                                   .fx = 8,
+                                   .fy = 8,
+                                   .cx = 4,
+                                   .cy = 4,
+                                   .near_plane = 0.1,
+                                   .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3}};
     if (adcgs_random_turns(s, SEGMENTS, 80, TURN, 70, &seed, NULL) != ADCGS_OK)
         return -1;
     *state = f;
@@ -266,9 +272,9 @@ static void test_join(void **state)
         const uint32_t first = next_key(f, at);
         const size_t left = f->grown.size - at;
         adcgs_decoder *pushed = NULL, *read = NULL;
-        adcgs_span from = { .next = f->grown.data + at, .left = left, .step = 50 };
+        adcgs_span from = {.next = f->grown.data + at, .left = left, .step = 50};
         adcgs_info info;
-        int heads[1] = { 0 };
+        int heads[1] = {0};
         if (at % 9 && at > 200 && at + 3 < f->at[first < SEGMENTS ? first : SEGMENTS]) /* trying every byte would be slow */
             continue;
         assert_int_equal(adcgs_open_push(&pushed, &config, NULL), ADCGS_OK);
@@ -324,10 +330,13 @@ static void test_join_damage(void **state)
     adcgs_error error;
     adcgs_buffer b;
     adcgs_span from;
-    int heads[1] = { 0 };
+    int heads[1] = {0};
     adcgs_buffer_init(&b);
     for (int i = 0; i < 5000; i++)
-        adcgs_write_bytes(&b, &"HEADaHEA\x8B" "ADCG"[i % 7], 6);
+        adcgs_write_bytes(&b,
+                          &"HEADaHEA\x8B"
+                           "ADCG"[i % 7],
+                          6);
     const size_t damaged = b.size;
     adcgs_write_bytes(&b, f->grown.data + key, head);
     b.data[damaged + 30] ^= 4;
@@ -347,7 +356,7 @@ static void test_join_damage(void **state)
     assert_int_equal(push_from(d, &b, 0, damaged, 4096, heads, &error), ADCGS_ERR_DATA);
     assert_non_null(strstr(error.text, "30000 bytes"));
     adcgs_close(&d);
-    from = (adcgs_span){ .next = f->grown.data + 100, .left = f->grown.size - 100 };
+    from = (adcgs_span){.next = f->grown.data + 100, .left = f->grown.size - 100};
     assert_int_equal(adcgs_open_stream(&d, adcgs_span_read, &from, NULL, NULL), ADCGS_ERR_DATA);
     assert_null(d);
     adcgs_buffer_clear(&b);
@@ -364,7 +373,7 @@ static void test_not_beyond(void **state)
     adcgs_write_bytes(&b, "what follows", 12);
     for (size_t at = 0; at < 2; at++) {
         adcgs_decoder *d = NULL;
-        adcgs_span from = { .next = b.data + at, .left = b.size - at };
+        adcgs_span from = {.next = b.data + at, .left = b.size - at};
         assert_int_equal(adcgs_open_stream(&d, adcgs_span_read, &from, &config, NULL), ADCGS_OK);
         assert_int_equal(from.left, 12);
         adcgs_close(&d);
@@ -375,8 +384,8 @@ static void test_not_beyond(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same), cmocka_unit_test(test_seek),        cmocka_unit_test(test_settle),
-        cmocka_unit_test(test_refused), cmocka_unit_test(test_join),     cmocka_unit_test(test_join_damage),
+        cmocka_unit_test(test_same),       cmocka_unit_test(test_seek),       cmocka_unit_test(test_settle),
+        cmocka_unit_test(test_refused),    cmocka_unit_test(test_join),       cmocka_unit_test(test_join_damage),
         cmocka_unit_test(test_join_early), cmocka_unit_test(test_not_beyond),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

@@ -13,11 +13,11 @@ enum { VIEWS = 4, WIDTH = 120, HEIGHT = 100, FOCAL = 100, PLANE = WIDTH * HEIGHT
 #define AWAY 1.5
 #define RADIUS 0.3
 
-static const double centre[3] = { 0.1, -0.05, 0.2 };
+static const double centre[3] = {0.1, -0.05, 0.2};
 static adcgs_stereo_view views[VIEWS];
 static uint8_t mask[VIEWS][PLANE];
 static float pixels[VIEWS][4 * PLANE];
-static const adcgs_stereo_point like = { .t = 0.25f, .moves = 1 };
+static const adcgs_stereo_point like = {.t = 0.25f, .moves = 1};
 static adcgs_error error;
 
 /** Views about the z axis, a quarter turn apart, that look at it. Each sees another grey. */
@@ -25,9 +25,15 @@ static int put_views(void **state)
 {
     for (int i = 0; i < VIEWS; i++) {
         const double angle = i * acos(0), c = cos(angle), s = sin(angle);
-        views[i] = (adcgs_stereo_view){ .rotation = { -s, c, 0, 0, 0, -1, -c, -s, 0 }, .centre = { AWAY * c, AWAY * s, 0 },
-                                        .fx = FOCAL, .fy = FOCAL, .cx = WIDTH / 2, .cy = HEIGHT / 2, .w = WIDTH, .h = HEIGHT,
-                                        .pixels = pixels[i] };
+        views[i] = (adcgs_stereo_view){.rotation = {-s, c, 0, 0, 0, -1, -c, -s, 0},
+                                       .centre = {AWAY * c, AWAY * s, 0},
+                                       .fx = FOCAL,
+                                       .fy = FOCAL,
+                                       .cx = WIDTH / 2,
+                                       .cy = HEIGHT / 2,
+                                       .w = WIDTH,
+                                       .h = HEIGHT,
+                                       .pixels = pixels[i]};
         for (int k = 0; k < 4 * PLANE; k++)
             pixels[i][k] = k % 4 == 3 ? 1 : 0.2f * (float)(i + 1);
     }
@@ -57,8 +63,8 @@ static void put_ball(void)
 
 static adcgs_stereo_list find(int n)
 {
-    const uint8_t *const moves[VIEWS] = { mask[0], mask[1], mask[2], mask[3] };
-    adcgs_stereo_list list = { 0, 0, NULL };
+    const uint8_t *const moves[VIEWS] = {mask[0], mask[1], mask[2], mask[3]};
+    adcgs_stereo_list list = {0, 0, NULL};
     if (adcgs_hull_find(&list, views, moves, n, &like, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     return list;
@@ -110,7 +116,7 @@ static void holes_are_closed(void **state)
 {
     put_ball();
     adcgs_stereo_list whole = find(VIEWS);
-    double at[2] = { 0, 0 }, depth;
+    double at[2] = {0, 0}, depth;
     assert_true(adcgs_stereo_rig_project(&views[0], centre, at, &depth));
     for (int y = -1; y <= 1; y++)
         for (int x = -1; x <= 1; x++)

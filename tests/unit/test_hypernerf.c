@@ -212,8 +212,10 @@ static void test_axes(void **state)
     static const struct {
         const char *rows;
         int axes;
-    } cases[] = {{"[[1,0,0],[0,1,0],[0,0,1]]", ADCGS_AXES_Y_DOWN}, {"[[1,0,0],[0,-1,0],[0,0,-1]]", ADCGS_AXES_Y_UP},
-                 {"[[1,0,0],[0,0,-1],[0,1,0]]", ADCGS_AXES_Z_UP},  {"[[1,0,0],[0,0,1],[0,-1,0]]", ADCGS_AXES_UNKNOWN},
+    } cases[] = {{"[[1,0,0],[0,1,0],[0,0,1]]", ADCGS_AXES_Y_DOWN},
+                 {"[[1,0,0],[0,-1,0],[0,0,-1]]", ADCGS_AXES_Y_UP},
+                 {"[[1,0,0],[0,0,-1],[0,1,0]]", ADCGS_AXES_Z_UP},
+                 {"[[1,0,0],[0,0,1],[0,-1,0]]", ADCGS_AXES_UNKNOWN},
                  {"[[0,1,0],[-1,0,0],[0,0,1]]", ADCGS_AXES_UNKNOWN}};
     put_text("dataset.json", "{\"ids\":[\"c\"]}");
     for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
@@ -328,8 +330,7 @@ static void test_bad_cameras(void **state)
     bad_camera(LENS ",\"orientation\":[[1,0,0],[0,1],[0,0,1]]", ADCGS_ERR_DATA, "orientation: expected 3 numbers");
     bad_camera(LENS ",\"orientation\":[[1,0,0],[0,1,0],[0,0,-1]],\"position\":[0,0,0]", ADCGS_ERR_DATA,
                "orientation: is a reflection");
-    bad_camera(LENS ",\"orientation\":[[2,0,0],[0,2,0],[0,0,2]],\"position\":[0,0,0]", ADCGS_ERR_DATA,
-               "orientation: is scaled");
+    bad_camera(LENS ",\"orientation\":[[2,0,0],[0,2,0],[0,0,2]],\"position\":[0,0,0]", ADCGS_ERR_DATA, "orientation: is scaled");
     bad_camera(LENS ",\"orientation\":[[1,0,0],[0,1,0],[0,0,1]]", ADCGS_ERR_DATA, "position: missing");
     bad_camera(LENS ",\"orientation\":[[1,0,0],[0,1,0],[0,0,1]],\"position\":[0,\"\",0]", ADCGS_ERR_DATA, "position: expected 3");
     put_text("dataset.json", "{\"ids\":[\"d\"]}");
@@ -538,13 +539,20 @@ static void test_masks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_fields, mend),      cmocka_unit_test_teardown(test_rule, mend),
-        cmocka_unit_test_teardown(test_reduced, mend),     cmocka_unit_test_teardown(test_points, mend),
-        cmocka_unit_test_teardown(test_apart, mend),       cmocka_unit_test_teardown(test_axes, mend),
-        cmocka_unit_test_teardown(test_detection, mend),   cmocka_unit_test_teardown(test_bad_lists, mend),
-        cmocka_unit_test_teardown(test_bad_scene, mend),   cmocka_unit_test_teardown(test_bad_cameras, mend),
-        cmocka_unit_test_teardown(test_mutations, mend),   cmocka_unit_test(test_hand),
-        cmocka_unit_test(test_windmill),                   cmocka_unit_test_teardown(test_masks, mend),
+        cmocka_unit_test_teardown(test_fields, mend),
+        cmocka_unit_test_teardown(test_rule, mend),
+        cmocka_unit_test_teardown(test_reduced, mend),
+        cmocka_unit_test_teardown(test_points, mend),
+        cmocka_unit_test_teardown(test_apart, mend),
+        cmocka_unit_test_teardown(test_axes, mend),
+        cmocka_unit_test_teardown(test_detection, mend),
+        cmocka_unit_test_teardown(test_bad_lists, mend),
+        cmocka_unit_test_teardown(test_bad_scene, mend),
+        cmocka_unit_test_teardown(test_bad_cameras, mend),
+        cmocka_unit_test_teardown(test_mutations, mend),
+        cmocka_unit_test(test_hand),
+        cmocka_unit_test(test_windmill),
+        cmocka_unit_test_teardown(test_masks, mend),
     };
     return cmocka_run_group_tests(tests, setup, remove_folder);
 }

@@ -316,8 +316,13 @@ static float pixels[WIDTH * HEIGHT * 3];
 static adcgs_status sink_frames(const char *target, const char *format, adcgs_depth depth, int frames)
 {
     const adcgs_frame frame = {WIDTH, HEIGHT, pixels};
-    const adcgs_sink_config config = {.target = target, .format = format, .depth = depth, .frame_rate = 30.0, .width = WIDTH,
-                                      .height = HEIGHT, .frames = frames};
+    const adcgs_sink_config config = {.target = target,
+                                      .format = format,
+                                      .depth = depth,
+                                      .frame_rate = 30.0,
+                                      .width = WIDTH,
+                                      .height = HEIGHT,
+                                      .frames = frames};
     adcgs_sink *sink;
     ADCGS_TRY(adcgs_sink_open(&sink, &config, &error));
     for (int i = 0; i < frames; i++)
@@ -335,8 +340,8 @@ static void test_y4m(void **state)
 {
     /* Y, Cb, Cr of black, white, red, green, blue and of values out of range (BT.709, limited). */
     static const float rgb[6][3] = {{0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-3, 2, NAN}};
-    static const uint8_t expected[6][3] = {{16, 128, 128}, {235, 128, 128}, {63, 102, 240}, {173, 42, 26}, {32, 240, 118},
-                                           {173, 42, 26}};
+    static const uint8_t expected[6][3] = {{16, 128, 128}, {235, 128, 128}, {63, 102, 240},
+                                           {173, 42, 26},  {32, 240, 118},  {173, 42, 26}};
     static const char header[] = "YUV4MPEG2 W37 H21 F30:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\nFRAME\n";
     static uint8_t bytes[65536];
     memcpy(pixels, rgb, sizeof rgb);
@@ -380,10 +385,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_trips), cmocka_unit_test(test_png),      cmocka_unit_test(test_sixteen_bits),
         cmocka_unit_test(test_damage),      cmocka_unit_test(test_cuts),     cmocka_unit_test(test_whole),
-        cmocka_unit_test(test_unwritable),
-        cmocka_unit_test(test_to_u8),       cmocka_unit_test(test_atomic),   cmocka_unit_test(test_full_disk),
-        cmocka_unit_test(test_modes),       cmocka_unit_test(test_links),    cmocka_unit_test(test_same_file),
-        cmocka_unit_test(test_patterns),    cmocka_unit_test(test_y4m),      cmocka_unit_test(test_sinks),
+        cmocka_unit_test(test_unwritable),  cmocka_unit_test(test_to_u8),    cmocka_unit_test(test_atomic),
+        cmocka_unit_test(test_full_disk),   cmocka_unit_test(test_modes),    cmocka_unit_test(test_links),
+        cmocka_unit_test(test_same_file),   cmocka_unit_test(test_patterns), cmocka_unit_test(test_y4m),
+        cmocka_unit_test(test_sinks),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

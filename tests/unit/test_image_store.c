@@ -34,8 +34,8 @@ static int setup(void **state)
     put_picture("a.ppm", 1.0f);
     put_picture("b.ppm", 0.5f);
     put_picture("c.exr", 4.0f);
-    put_text("transforms.json", "{\"w\":7,\"h\":5,\"fl_x\":5,\"frames\":[" VIEW("a.ppm") "," VIEW("a.ppm") "," VIEW("b.ppm") ","
-                                VIEW("c.exr") "," VIEW("a.ppm") "]}");
+    put_text("transforms.json", "{\"w\":7,\"h\":5,\"fl_x\":5,\"frames\":[" VIEW("a.ppm") "," VIEW("a.ppm") "," VIEW(
+                                    "b.ppm") "," VIEW("c.exr") "," VIEW("a.ppm") "]}");
     return adcgs_scene_open(&scene, folder, NULL, &error) != ADCGS_OK;
 }
 
@@ -226,9 +226,9 @@ static void test_missing_picture(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_budgets),  cmocka_unit_test(test_reduced),         cmocka_unit_test(test_put),
-        cmocka_unit_test(test_progress),
-        cmocka_unit_test(test_no_room),  cmocka_unit_test(test_limited_room), cmocka_unit_test(test_missing_picture),
+        cmocka_unit_test(test_budgets),         cmocka_unit_test(test_reduced), cmocka_unit_test(test_put),
+        cmocka_unit_test(test_progress),        cmocka_unit_test(test_no_room), cmocka_unit_test(test_limited_room),
+        cmocka_unit_test(test_missing_picture),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

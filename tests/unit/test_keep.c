@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-static const adcgs_read_options plain = { .cpu = ADCGS_CPU_SCALAR };
+static const adcgs_read_options plain = {.cpu = ADCGS_CPU_SCALAR};
 
 static void check(adcgs_status status, const adcgs_error *error)
 {
@@ -26,13 +26,13 @@ static void check(adcgs_status status, const adcgs_error *error)
 static adcgs_status read_stream(adcgs_stream *stream, const uint8_t *data, size_t bytes, const adcgs_read_options *options,
                                 adcgs_error *error)
 {
-    adcgs_span s = { .next = data, .left = bytes };
+    adcgs_span s = {.next = data, .left = bytes};
     return adcgs_stream_read(stream, adcgs_span_read, &s, options, NULL, NULL, error);
 }
 
 static void write_stream(adcgs_stream *stream, adcgs_buffer *bytes)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_buffer_init(bytes);
     check(adcgs_stream_write(stream, bytes, &error), &error);
 }
@@ -47,7 +47,7 @@ static adcgs_params some_params(uint64_t *seed)
 /** A stream of one random model, with room for more segments, which the functions below append. */
 static void make_stream(adcgs_stream *stream, const adcgs_params *params, uint32_t room, uint32_t n, uint64_t *seed)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream_init(stream);
     stream->params = *params;
     stream->slice_log2 = ADCGS_SLICE_LOG2_MIN;
@@ -69,7 +69,7 @@ static adcgs_model *next_segment(adcgs_stream *stream)
 
 static void append_follower(adcgs_stream *stream, uint32_t n, uint64_t *seed)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_model *m = &stream->segments[stream->n_segments];
     check(adcgs_random_follower(m, m - 1, n, seed, &error), &error);
     next_segment(stream);
@@ -78,9 +78,9 @@ static void append_follower(adcgs_stream *stream, uint32_t n, uint64_t *seed)
 /** Appends a segment with the anchors of the one before, without every nth one; 0: with all. */
 static adcgs_model *append_same(adcgs_stream *stream, uint32_t nth)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_model *m = &stream->segments[stream->n_segments], *before = m - 1;
-    adcgs_inter kept = { .n = 0 };
+    adcgs_inter kept = {.n = 0};
     *m = adcgs_random_frame(before);
     for (int role = 0; role < ADCGS_ROLES; role++)
         if (before->net[role].present)
@@ -98,7 +98,7 @@ static adcgs_model *append_same(adcgs_stream *stream, uint32_t nth)
 
 static void check_models(const adcgs_stream *a, const adcgs_stream *b)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     assert_int_equal(a->n_segments, b->n_segments);
     for (uint32_t i = 0; i < a->n_segments; i++) {
         if (!adcgs_model_equal(&a->segments[i], &b->segments[i], &error))
@@ -110,7 +110,7 @@ static void check_models(const adcgs_stream *a, const adcgs_stream *b)
 /** Reads the stream back and writes it again as the same bytes. \return payload bytes of its last KEEP; anchors: its GEOM's. */
 static size_t check_round_trip(adcgs_stream *stream, uint32_t *anchors)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream back;
     adcgs_buffer bytes, again;
     adcgs_found_chunk c;
@@ -136,7 +136,7 @@ static size_t check_round_trip(adcgs_stream *stream, uint32_t *anchors)
 /* REQ-STRM-043, REQ-STRM-044, REQ-STRM-045, REQ-STRM-048, REQ-LATN-015, REQ-LATN-016, REQ-LATN-017, REQ-LATN-018 */
 static void test_round_trip(void **state)
 {
-    static const uint32_t counts[] = { 1, 3, 63, 64, 65, 200 };
+    static const uint32_t counts[] = {1, 3, 63, 64, 65, 200};
     (void)state;
     for (uint64_t seed = 1; seed <= 24; seed++) {
         adcgs_stream stream;
@@ -181,7 +181,7 @@ static void test_all_kept(void **state)
 /* REQ-LATN-015, REQ-STRM-047 */
 static void test_dropped(void **state)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream;
     uint64_t seed = 4;
     uint32_t anchors = 1;
@@ -222,7 +222,7 @@ static int change_latents(adcgs_model *m, int group, int channel, int32_t steps)
 /* REQ-LATN-016, REQ-LATN-017, REQ-LATN-018 */
 static void test_differences(void **state)
 {
-    static const int32_t steps[] = { 1, -1, 2, -13, 14, -14, 15, -15, 16, 17, -18, 63, 300, -700, 1023, -1023, 2000, -2000 };
+    static const int32_t steps[] = {1, -1, 2, -13, 14, -14, 15, -15, 16, 17, -18, 63, 300, -700, 1023, -1023, 2000, -2000};
     (void)state;
     for (size_t s = 0; s < ADCGS_COUNTOF(steps); s++)
         for (int group = 0; group < ADCGS_INTER_GROUPS; group++) {
@@ -246,9 +246,9 @@ static void test_differences(void **state)
 /* REQ-LATN-016 */
 static void test_out_of_reach(void **state)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream;
-    adcgs_inter kept = { .n = 0 };
+    adcgs_inter kept = {.n = 0};
     uint64_t seed = 6;
     adcgs_params params = some_params(&seed);
     params.n_eta = 2;
@@ -275,7 +275,7 @@ static void test_out_of_reach(void **state)
 /* REQ-STRM-043, REQ-STRM-021 */
 static void test_networks(void **state)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream;
     uint64_t seed = 7;
     const adcgs_params params = some_params(&seed);
@@ -283,7 +283,7 @@ static void test_networks(void **state)
     make_stream(&stream, &params, 2, 20, &seed);
     adcgs_model *const before = &stream.segments[0];
     adcgs_net_release(&before->net[ADCGS_ROLE_COARSE], NULL);
-    before->net[ADCGS_ROLE_COARSE] = (adcgs_net){ .present = 0 };
+    before->net[ADCGS_ROLE_COARSE] = (adcgs_net){.present = 0};
     adcgs_model *const m = append_same(&stream, 0);
     check_round_trip(&stream, NULL);
     const uint64_t none = stream.bytes.networks;
@@ -304,7 +304,7 @@ static void test_networks(void **state)
 
 static void check_refused(adcgs_stream *stream, const char *why)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_buffer bytes;
     adcgs_buffer_init(&bytes);
     assert_int_equal(adcgs_stream_write(stream, &bytes, &error), ADCGS_ERR_USAGE);
@@ -331,9 +331,9 @@ static void test_writer_refuses(void **state)
         const char *why;
         void *place;
     } const changes[] = {
-        { "grid", &m->depth },          { "grid", &m->voxel },           { "grid", &m->origin[1] },  { "shapes", &m->shape[2] },
-        { "shapes", &m->eta_mu[0] },    { "shapes", &m->eta_si[0] },     { "steps", &m->d_fv[2] },   { "steps", &m->d_sigma[5] },
-        { "steps", &m->d_colour[0] },   { "steps", &m->d_fg[3] },
+        {"grid", &m->depth},        {"grid", &m->voxel},       {"grid", &m->origin[1]}, {"shapes", &m->shape[2]},
+        {"shapes", &m->eta_mu[0]},  {"shapes", &m->eta_si[0]}, {"steps", &m->d_fv[2]},  {"steps", &m->d_sigma[5]},
+        {"steps", &m->d_colour[0]}, {"steps", &m->d_fg[3]},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(changes); i++) {
         *(uint8_t *)changes[i].place ^= 1;
@@ -367,7 +367,7 @@ static void test_cut_anywhere(void **state)
     (void)state;
     make_small(&stream, &bytes);
     for (size_t n = 0; n < bytes.size; n++) {
-        adcgs_error error = { ADCGS_OK, "" };
+        adcgs_error error = {ADCGS_OK, ""};
         uint8_t *copy = malloc(n + (n == 0)); /* exactly n bytes: a sanitizer detects a read beyond */
         assert_non_null(copy);
         memcpy(copy, bytes.data, n);
@@ -394,7 +394,7 @@ static void test_cut_anywhere(void **state)
 /** Whole segments of a damaged but readable stream have their original digests. */
 static void check_same(const adcgs_stream *stream, const adcgs_stream *part)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     assert_int_equal(part->n_segments, stream->n_segments);
     for (uint32_t i = 0; i < part->n_segments; i++) {
         uint8_t expected[16], found[16];
@@ -443,7 +443,7 @@ static void test_layers(void **state)
     (void)state;
     make_small(&stream, &bytes);
     for (int layers = 1; layers <= 3; layers++) {
-        adcgs_error error = { ADCGS_OK, "" };
+        adcgs_error error = {ADCGS_OK, ""};
         adcgs_read_options options = plain;
         options.layers = layers;
         check(read_stream(&part, bytes.data, bytes.size, &options, &error), &error);
@@ -466,7 +466,7 @@ static void test_layers(void **state)
 /* REQ-CONF-004 */
 static void test_threads_and_cpus(void **state)
 {
-    static const int threads[] = { 1, 2, 7 };
+    static const int threads[] = {1, 2, 7};
     adcgs_stream stream, back;
     adcgs_buffer bytes;
     uint64_t seed = 11;
@@ -478,8 +478,8 @@ static void test_threads_and_cpus(void **state)
     write_stream(&stream, &bytes);
     for (size_t i = 0; i < ADCGS_COUNTOF(threads); i++)
         for (int cpu = ADCGS_CPU_SCALAR; cpu <= (int)adcgs_cpu_best(); cpu++) {
-            adcgs_error error = { ADCGS_OK, "" };
-            adcgs_read_options options = { .cpu = (adcgs_cpu_level)cpu };
+            adcgs_error error = {ADCGS_OK, ""};
+            adcgs_read_options options = {.cpu = (adcgs_cpu_level)cpu};
             check(adcgs_pool_create(&options.pool, threads[i], &error), &error);
             check(read_stream(&back, bytes.data, bytes.size, &options, &error), &error);
             check_models(&stream, &back);
@@ -493,9 +493,9 @@ static void test_threads_and_cpus(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip),     cmocka_unit_test(test_all_kept), cmocka_unit_test(test_dropped),
-        cmocka_unit_test(test_differences),    cmocka_unit_test(test_out_of_reach), cmocka_unit_test(test_networks),
-        cmocka_unit_test(test_writer_refuses), cmocka_unit_test(test_cut_anywhere), cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_round_trip),     cmocka_unit_test(test_all_kept),         cmocka_unit_test(test_dropped),
+        cmocka_unit_test(test_differences),    cmocka_unit_test(test_out_of_reach),     cmocka_unit_test(test_networks),
+        cmocka_unit_test(test_writer_refuses), cmocka_unit_test(test_cut_anywhere),     cmocka_unit_test(test_damage),
         cmocka_unit_test(test_layers),         cmocka_unit_test(test_threads_and_cpus),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -44,8 +44,8 @@ typedef struct call {
 
 static float extreme(uint64_t *state)
 {
-    static const float numbers[] = {0.0f, 0x1p-149f, 0x1p-130f, FLT_MIN, 0x1p-24f, 0.5f, 1.0f, 127.0f, 0x1p24f, 1e30f, FLT_MAX,
-                                    INFINITY, NAN};
+    static const float numbers[] = {0.0f,   0x1p-149f, 0x1p-130f, FLT_MIN, 0x1p-24f, 0.5f, 1.0f,
+                                    127.0f, 0x1p24f,   1e30f,     FLT_MAX, INFINITY, NAN};
     const float x = numbers[(size_t)(scene_uniform(state) * ADCGS_COUNTOF(numbers))];
     return scene_uniform(state) < 0.5 ? -x : x;
 }
@@ -245,7 +245,7 @@ static void loss(call *c)
     const size_t n = 3 * (size_t)width * (size_t)height;
     adcgs_loss *l;
     adcgs_loss_value value;
-    const adcgs_loss_shares shares = { c->round & 1 ? 0.2f : 0.0f, c->round & 2 ? 0.7f : 0.0f };
+    const adcgs_loss_shares shares = {c->round & 1 ? 0.2f : 0.0f, c->round & 2 ? 0.7f : 0.0f};
     const float *const image = given(c, n), *const target = given(c, n);
     assert_int_equal(adcgs_loss_create(&l, c->level, NULL, NULL), ADCGS_OK);
     assert_int_equal(adcgs_loss_image(l, image, target, width, height, &shares, output(c, n), &value, NULL), ADCGS_OK);
@@ -323,9 +323,17 @@ static void rates(call *c)
         assert_non_null(table);
         adcgs_rate_table_init(table, 0);
     }
-    adcgs_rate_io io = {.n = n, .y = given(c, many), .step = constant(c, (size_t)n, 0.25f), .mu = given(c, many),
-                        .si = given(c, many), .weight = constant(c, L, 1), .scale = 1, .dy = added(c, many),
-                        .dmu = output(c, many), .dsi = output(c, many), .table = table,
+    adcgs_rate_io io = {.n = n,
+                        .y = given(c, many),
+                        .step = constant(c, (size_t)n, 0.25f),
+                        .mu = given(c, many),
+                        .si = given(c, many),
+                        .weight = constant(c, L, 1),
+                        .scale = 1,
+                        .dy = added(c, many),
+                        .dmu = output(c, many),
+                        .dsi = output(c, many),
+                        .table = table,
                         .x = c->round & 1 ? output(c, many) : NULL};
     *output(c, 1) = (float)dsp.rate(&io);
     if (c->kind == ORDINARY)
@@ -343,9 +351,9 @@ typedef struct subject {
 } subject;
 
 static const subject subjects[] = {
-    {"dense layers", dense, 1}, {"anchors", anchors, 1}, {"slots", slots, 1}, {"frames", frames, 1}, {"loss", loss, 1},
-    {"weights", weights, 0},    {"rows", rows, 0},       {"rates", rates, 0},
-    {"residual layers", residual, 1},
+    {"dense layers", dense, 1}, {"anchors", anchors, 1}, {"slots", slots, 1},
+    {"frames", frames, 1},      {"loss", loss, 1},       {"weights", weights, 0},
+    {"rows", rows, 0},          {"rates", rates, 0},     {"residual layers", residual, 1},
 };
 
 static int same(float a, float b)
@@ -418,7 +426,8 @@ int main(void)
 {
     struct CMUnitTest tests[ADCGS_COUNTOF(subjects)];
     for (size_t i = 0; i < ADCGS_COUNTOF(subjects); i++)
-        tests[i] = (struct CMUnitTest){.name = subjects[i].name, .test_func = test_subject,
+        tests[i] = (struct CMUnitTest){.name = subjects[i].name,
+                                       .test_func = test_subject,
                                        .initial_state = (void *)(uintptr_t)&subjects[i]};
     return cmocka_run_group_tests_name("kernels", tests, NULL, NULL);
 }

@@ -37,9 +37,12 @@ static void test_names(void **state)
         const char *kind;
         adcgs_kind_class class;
     } cases[] = {
-        {"a", BYTES("\x8b""ADC\r\n\x1a\n"), "an adcgs stream", ADCGS_KIND_STREAM},
-        {"a", BYTES("<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html"),
-         "a page of adcgs-share", ADCGS_KIND_PAGE},
+        {"a",
+         BYTES("\x8b"
+               "ADC\r\n\x1a\n"),
+         "an adcgs stream", ADCGS_KIND_STREAM},
+        {"a", BYTES("<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html"), "a page of adcgs-share",
+         ADCGS_KIND_PAGE},
         {"a", BYTES("\xef\xbb\xbf <html lang=\"de\">"), "a page (HTML)", ADCGS_KIND_OTHER},
         {"a.png", BYTES("\xff\xd8\xff\xe0"), "a JPEG image", ADCGS_KIND_IMAGE},
         {"a", BYTES("RIFF\1\2\3\4WEBPVP8 "), "a WebP image", ADCGS_KIND_IMAGE},
@@ -49,12 +52,27 @@ static void test_names(void **state)
         {"a", BYTES("II*\0\x10\0\0\0CR\2\0"), "a raw image of a camera", ADCGS_KIND_IMAGE},
         {"a", BYTES("II*\0\x08\0\0\0\1\0\xfe\0\4\0\1\0\0\0\1\0\0\0"), "a raw image of a camera", ADCGS_KIND_IMAGE},
         {"a", BYTES("MM\0*\0\0\0\x08\0\1\xc6\x12\0\1\0\0\0\4\1\4\0\0"), "a raw image (DNG)", ADCGS_KIND_IMAGE},
-        {"a", BYTES("\0\0\0\x18" "ftypcrx "), "a raw image of a camera (CR3)", ADCGS_KIND_IMAGE},
-        {"a", BYTES("\0\0\0\x18" "ftypheic\0\0\0\0mif1heic"), "an HEIC image", ADCGS_KIND_IMAGE},
-        {"a", BYTES("\0\0\0\x18" "ftypmif1\0\0\0\0mif1avif"), "an AVIF image", ADCGS_KIND_IMAGE},
-        {"a", BYTES("\0\0\0\x18" "ftypisom\0\0\0\0isomavc1"), "a video (MP4 or QuickTime)", ADCGS_KIND_VIDEO},
+        {"a",
+         BYTES("\0\0\0\x18"
+               "ftypcrx "),
+         "a raw image of a camera (CR3)", ADCGS_KIND_IMAGE},
+        {"a",
+         BYTES("\0\0\0\x18"
+               "ftypheic\0\0\0\0mif1heic"),
+         "an HEIC image", ADCGS_KIND_IMAGE},
+        {"a",
+         BYTES("\0\0\0\x18"
+               "ftypmif1\0\0\0\0mif1avif"),
+         "an AVIF image", ADCGS_KIND_IMAGE},
+        {"a",
+         BYTES("\0\0\0\x18"
+               "ftypisom\0\0\0\0isomavc1"),
+         "a video (MP4 or QuickTime)", ADCGS_KIND_VIDEO},
         {"a.jpg", BYTES("\0\0\0\x08wide\0\0\0\0mdat"), "a video (MP4 or QuickTime)", ADCGS_KIND_VIDEO},
-        {"VID_0.INSV", BYTES("\0\0\0\x18" "ftypavc1"), "a video of two fisheyes (Insta360)", ADCGS_KIND_VIDEO},
+        {"VID_0.INSV",
+         BYTES("\0\0\0\x18"
+               "ftypavc1"),
+         "a video of two fisheyes (Insta360)", ADCGS_KIND_VIDEO},
         {"a", BYTES("\x1a\x45\xdf\xa3"), "a video (Matroska or WebM)", ADCGS_KIND_VIDEO},
         {"a", BYTES("RIFF\1\2\3\4AVI LIST"), "a video (AVI)", ADCGS_KIND_VIDEO},
         {"a", BYTES("YUV4MPEG2 W4"), "a video (YUV4MPEG2)", ADCGS_KIND_VIDEO},
@@ -68,25 +86,22 @@ static void test_names(void **state)
         {"a", BYTES("ply\nformat ascii 1.0\nelement vertex 1\nproperty float f_dc_0\n"), "splats (PLY)", ADCGS_KIND_SPLATS},
         {"a", BYTES("ply\r\nformat ascii 1.0\r\n"), "a PLY file", ADCGS_KIND_SPLATS},
         {"a", BYTES("Kg\0\0\xe9\0\0\0[{"), "splats that change with time (.splatv)", ADCGS_KIND_SPLATS},
-        {"a.zip", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x05\0\0\0b.png"),
-         "an archive (ZIP)", ADCGS_KIND_OTHER},
-        {"a.sog", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x0c\0\0\0means_l.webp"),
-         "splats (SOG)", ADCGS_KIND_SPLATS},
+        {"a.zip", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x05\0\0\0b.png"), "an archive (ZIP)",
+         ADCGS_KIND_OTHER},
+        {"a.sog", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x0c\0\0\0means_l.webp"), "splats (SOG)",
+         ADCGS_KIND_SPLATS},
         {"a", BYTES("PK\3\4 params.npy"), "arrays of NumPy (NPZ)", ADCGS_KIND_OTHER},
         {"a", BYTES("LASF"), "a point cloud (LAS or LAZ)", ADCGS_KIND_POINTS},
         {"a", BYTES("{\"w\":1,\"h\":1,\"K\":[1],\"poses\":[[1]]}"), "Record3D's metadata.json", ADCGS_KIND_SCENE},
         {"a", BYTES("{\"poses\":[["), "Record3D's metadata.json", ADCGS_KIND_SCENE},
-        {"a", BYTES("{\"w\":1,\"h\":1,\"k\":[],\"w2c\":[],\"fn\":[]}"),
-         "the cameras of a scene (JSON)", ADCGS_KIND_SCENE},
+        {"a", BYTES("{\"w\":1,\"h\":1,\"k\":[],\"w2c\":[],\"fn\":[]}"), "the cameras of a scene (JSON)", ADCGS_KIND_SCENE},
         {"a", BYTES("[{\"id\":0,\"img_name\":\"a\",\"position\":[],\"rotation\":[]}]"),
-         "cameras.json as 3D Gaussian splatting writes it",
+         "cameras.json as 3D Gaussian splatting writes it", ADCGS_KIND_SCENE},
+        {"a", BYTES("{\"camera_angle_x\":1,\"frames\":[{\"transform_matrix\":"), "the cameras of a scene (JSON)",
          ADCGS_KIND_SCENE},
-        {"a", BYTES("{\"camera_angle_x\":1,\"frames\":[{\"transform_matrix\":"),
-         "the cameras of a scene (JSON)", ADCGS_KIND_SCENE},
         {"a", BYTES("{\"K\":1,\"poses\":2,\"frames\":[]}"), "a file of unknown kind", ADCGS_KIND_UNKNOWN},
         {"a", BYTES("<?xml version=\"1.0\"?>\n<document version=\"2.0.0\">\n<chunk label=\"a\">"),
-         "Agisoft Metashape's cameras (XML)",
-         ADCGS_KIND_SCENE},
+         "Agisoft Metashape's cameras (XML)", ADCGS_KIND_SCENE},
         {"a", BYTES("<?xml version=\"1.0\"?>\n<b/>"), "an XML text", ADCGS_KIND_OTHER},
         {"a", BYTES("#name,x,y,alt\na,1,2,3\n"), "RealityCapture's cameras (CSV)", ADCGS_KIND_SCENE},
         {"a", BYTES("name;b,x,y\na,1,2\n"), "a table (CSV)", ADCGS_KIND_OTHER},
@@ -150,17 +165,22 @@ static void test_no_images(void **state)
     refused("x.null?RES=64x64&CHANNELS=3", BYTES("any bytes"), ADCGS_ERR_DATA, "expected an image");
     refused("x.png", BYTES("any bytes"), ADCGS_ERR_DATA, "a file of unknown kind");
     refused("x", BYTES("any bytes"), ADCGS_ERR_DATA, "x: a file of unknown kind");
-    refused("x.mp4", BYTES("\0\0\0\x18" "ftypisom\0\0\0\0isomavc1"),
+    refused("x.mp4",
+            BYTES("\0\0\0\x18"
+                  "ftypisom\0\0\0\0isomavc1"),
             ADCGS_ERR_DATA, "a video (MP4 or QuickTime), expected an image");
     refused("x.jpg", BYTES("\x1a\x45\xdf\xa3\x9f"), ADCGS_ERR_DATA, "adcgs-import extracts its frames");
     refused("x.tga", BYTES("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\0\1\2\3"), ADCGS_ERR_DATA, "x.tga: ");
-    refused("x.psd", BYTES("8BPS\0\1\0\0\0\0\0\0\0\3"),
-            ADCGS_ERR_UNSUPPORTED, "a Photoshop document, which is not read: convert");
+    refused("x.psd", BYTES("8BPS\0\1\0\0\0\0\0\0\0\3"), ADCGS_ERR_UNSUPPORTED,
+            "a Photoshop document, which is not read: convert");
     refused("x.vdb", BYTES(" BDV\0\0\0\0"), ADCGS_ERR_DATA, "x.vdb: ");
     refused("x.dcm", BYTES("\0\0\0\0DICM"), ADCGS_ERR_DATA, "x.dcm: ");
-    refused("x.nef", BYTES("MM\0*\0\0\0\x08\0\0\0\0"),
-            ADCGS_ERR_UNSUPPORTED, "a raw image of a camera, which is not read: develop");
-    refused("x.adcgs", BYTES("\x8b""ADC\r\n\x1a\n"), ADCGS_ERR_DATA, "an adcgs stream, expected an image");
+    refused("x.nef", BYTES("MM\0*\0\0\0\x08\0\0\0\0"), ADCGS_ERR_UNSUPPORTED,
+            "a raw image of a camera, which is not read: develop");
+    refused("x.adcgs",
+            BYTES("\x8b"
+                  "ADC\r\n\x1a\n"),
+            ADCGS_ERR_DATA, "an adcgs stream, expected an image");
 }
 
 /** Sizes are checked against the bound before memory is allocated for pixels. */
@@ -168,8 +188,8 @@ static void test_sizes(void **state)
 {
     refused("x.gif", BYTES("GIF89a\xff\xff\xff\xff\x80\0\0\0\0\0\xff\xff\xff,\0\0\0\0\xff\xff\xff\xff\0\2\2D\1\0;"),
             ADCGS_ERR_DATA, "x.gif: 65535x65535 pixels, expected 1x1 to 16384x16384");
-    refused("x.bmp", BYTES("BM\0\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\xff\xff\xff\x7f\1\0\0\0\1\0\x18\0"),
-            ADCGS_ERR_DATA, "x.bmp: 2147483647x1 pixels, expected");
+    refused("x.bmp", BYTES("BM\0\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\xff\xff\xff\x7f\1\0\0\0\1\0\x18\0"), ADCGS_ERR_DATA,
+            "x.bmp: 2147483647x1 pixels, expected");
     refused("x.bmp", BYTES("BM\0\0\0\0\0\0\0\0\x1a\0\0\0\x0c\0\0\0\1\0\xff\xff\1\0\x18\0"), ADCGS_ERR_DATA,
             "x.bmp: 1x65535 pixels");
     refused("x.hdr", BYTES("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 70000 +X 70000\n"), ADCGS_ERR_DATA, "70000x70000 pixels");
@@ -203,7 +223,8 @@ static void test_nothing_else(void **state)
                  {"x.mp4", "secret.mp4"},
                  {"secret.mp4.null", "some bytes"}};
     const int watch = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    put_bytes("secret.mp4", BYTES("\0\0\0\x18" "ftypisom\0\0\0\0isomavc1"));
+    put_bytes("secret.mp4", BYTES("\0\0\0\x18"
+                                  "ftypisom\0\0\0\0isomavc1"));
     if (watch < 0 || inotify_add_watch(watch, folder, IN_OPEN) < 0)
         skip();
     fclose(fopen(in("secret.mp4"), "rb"));
@@ -249,7 +270,8 @@ static void test_readers(void **state)
 static void test_wants(void **state)
 {
     adcgs_scene *scene;
-    put_bytes("s.adcgs", BYTES("\x8b""ADC\r\n\x1a\n and more"));
+    put_bytes("s.adcgs", BYTES("\x8b"
+                               "ADC\r\n\x1a\n and more"));
     put_text("p.html", "<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html>");
     put_text("t.json", "{\"frames\":[]}");
     assert_int_equal(adcgs_kind_check(in("s.adcgs"), ADCGS_WANT_STREAM, &error), ADCGS_OK);
@@ -270,8 +292,8 @@ static void test_wants(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_names),   cmocka_unit_test(test_unmarked), cmocka_unit_test(test_no_images),
-        cmocka_unit_test(test_sizes),   cmocka_unit_test(test_readers),  cmocka_unit_test(test_wants),
+        cmocka_unit_test(test_names),        cmocka_unit_test(test_unmarked), cmocka_unit_test(test_no_images),
+        cmocka_unit_test(test_sizes),        cmocka_unit_test(test_readers),  cmocka_unit_test(test_wants),
 #ifdef __linux__
         cmocka_unit_test(test_nothing_else),
 #endif

@@ -44,7 +44,7 @@ typedef struct start {
 
 static start make_start(const layout *l)
 {
-    start s = { .scale = 0 };
+    start s = {.scale = 0};
     expect_good(adcgs_scene_open(&s.scene, scene_path(l), NULL, &error));
     return s;
 }
@@ -183,7 +183,8 @@ static void test_apart_poses(void **state)
     begin_anew(&layouts[DNERF]);
     start first = make_start(&layouts[DNERF]), second;
     finish_start(&first);
-    put_text("transforms_test.json", "{\"fl_x\":99,\"w\":24,\"h\":16,\"ply_file_path\":\"0.ppm\",\"frames\":["
+    put_text("transforms_test.json",
+             "{\"fl_x\":99,\"w\":24,\"h\":16,\"ply_file_path\":\"0.ppm\",\"frames\":["
              "{\"file_path\":\"0.ppm\",\"time\":1,\"transform_matrix\":[[1,0,0,70],[0,1,0,0],[0,0,1,900]]},"
              "{\"file_path\":\"8.ppm\",\"time\":0,\"transform_matrix\":[[1,0,0,9],[0,1,0,0],[0,0,1,-900]]}]}");
     second = make_start(&layouts[DNERF]);

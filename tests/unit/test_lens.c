@@ -9,6 +9,7 @@
 #include <jansson.h>
 #include <math.h>
 
+/* clang-format off */
 #define BARREL {.width = 320, .height = 240, .fx = 200, .fy = 210, .cx = 150, .cy = 130, .k = {-0.25, 0.07, -0.005}}
 #define CUSHION {.width = 320, .height = 240, .fx = 300, .fy = 300, .cx = 160, .cy = 120, .k = {0.15, 0.05}}
 #define CROOKED {.width = 200, .height = 260, .fx = 250, .fy = 230, .cx = 120, .cy = 100, .skew = 4, \
@@ -21,6 +22,7 @@
 #define SHEARED {.width = 100, .height = 80, .fx = 90, .fy = 80, .cx = 40, .cy = 45, .skew = -12}
 /* The camera's axis is outside of the image, which is a crop of a larger one. */
 #define ASIDE {.width = 100, .height = 80, .fx = 300, .fy = 300, .cx = -60, .cy = 140, .k = {-0.2, 0.05}, .p = {0.001, 0}}
+/* clang-format on */
 
 static const adcgs_lens lenses[] = {BARREL, CUSHION, CROOKED, RATIONAL, EIGHTH, SHEARED, ASIDE, FISHEYE};
 
@@ -55,8 +57,8 @@ static void reference(const adcgs_lens *l, double x, double y, double uv[2])
 static void test_projection(void **state)
 {
     /* By hand: r^2 = 0.25 + 0.0625 = 0.3125; factor 1 + 0.1 r^2 = 1.03125; x' = 0.515625 + 2 p1 xy + p2 (r^2 + 2 x^2). */
-    const adcgs_lens plain = {.width = 10, .height = 10, .fx = 100, .fy = 200, .cx = 5, .cy = 7, .skew = 10, .k = {0.1},
-                              .p = {0.01, 0.02}};
+    const adcgs_lens plain =
+        {.width = 10, .height = 10, .fx = 100, .fy = 200, .cx = 5, .cy = 7, .skew = 10, .k = {0.1}, .p = {0.01, 0.02}};
     double uv[2], expected[2];
     adcgs_lens_project(&plain, 0.5, 0.25, uv);
     assert_true(fabs(uv[0] - (100 * (0.515625 + 0.0025 + 0.01625) + 10 * (0.2578125 + 0.004375 + 0.005) + 5)) < 1e-12);
@@ -123,8 +125,10 @@ static void test_fold(void **state)
  * A circular image that also shows the scene behind the lens. The pinhole of the same focal lengths sees 60 degrees to each side
  * of the axis.
  */
+/* clang-format off */
 #define CIRCLE {.width = 400, .height = 300, .fx = 100, .fy = 101, .cx = 190, .cy = 210, .k = {0.04, -0.01, 0.002, -0.0003}, \
                 .is_fisheye = 1}
+/* clang-format on */
 
 /** The inverse exists up to 89.4 degrees from the axis and not beyond. */
 static void test_angles(void **state)
@@ -264,7 +268,7 @@ static void test_circle(void **state)
     expect_good(adcgs_lens_pinhole(&lens, &c, "x", &error));
     assert_true(c.fx == 100 && c.fy == 101 && lens.width == 400);
     assert_true(c.width == 2 * floor(100 * sqrt(3)) && c.cx == floor(100 * sqrt(3))); /* 60 degrees to each side */
-    assert_true(c.height - c.cy > 90 && c.height - c.cy < floor(101 * sqrt(3))); /* below the axis the image ends earlier */
+    assert_true(c.height - c.cy > 90 && c.height - c.cy < floor(101 * sqrt(3)));      /* below the axis the image ends earlier */
     assert_true(c.cy == floor(101 * sqrt(3)));
     for (int j = 0; j <= c.height; j++)
         for (int i = 0; i <= c.width; i++)
@@ -451,8 +455,14 @@ static double cell(json_t *rows, size_t i, size_t j)
 /** One camera of the calibration. Its pixels have their centres at whole numbers; D is k1 k2 p1 p2 k3. */
 static adcgs_lens read_lens(json_t *k, json_t *d)
 {
-    return (adcgs_lens){.width = 1024, .height = 1024, .fx = cell(k, 0, 0), .fy = cell(k, 1, 1), .cx = cell(k, 0, 2) + 0.5,
-                        .cy = cell(k, 1, 2) + 0.5, .skew = cell(k, 0, 1), .k = {cell(d, 0, 0), cell(d, 1, 0), cell(d, 4, 0)},
+    return (adcgs_lens){.width = 1024,
+                        .height = 1024,
+                        .fx = cell(k, 0, 0),
+                        .fy = cell(k, 1, 1),
+                        .cx = cell(k, 0, 2) + 0.5,
+                        .cy = cell(k, 1, 2) + 0.5,
+                        .skew = cell(k, 0, 1),
+                        .k = {cell(d, 0, 0), cell(d, 1, 0), cell(d, 4, 0)},
                         .p = {cell(d, 2, 0), cell(d, 3, 0)}};
 }
 
@@ -527,11 +537,11 @@ static void test_ring(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_projection), cmocka_unit_test(test_inverse),      cmocka_unit_test(test_fold),
+        cmocka_unit_test(test_projection), cmocka_unit_test(test_inverse),       cmocka_unit_test(test_fold),
         cmocka_unit_test(test_angles),     cmocka_unit_test(test_fisheye_folds), cmocka_unit_test(test_circle),
-        cmocka_unit_test(test_nonsense),   cmocka_unit_test(test_coverage),     cmocka_unit_test(test_largest),
-        cmocka_unit_test(test_flat),       cmocka_unit_test(test_straightened), cmocka_unit_test(test_range),
-        cmocka_unit_test(test_alpha),      cmocka_unit_test(test_ring),         cmocka_unit_test(test_circle_straightened),
+        cmocka_unit_test(test_nonsense),   cmocka_unit_test(test_coverage),      cmocka_unit_test(test_largest),
+        cmocka_unit_test(test_flat),       cmocka_unit_test(test_straightened),  cmocka_unit_test(test_range),
+        cmocka_unit_test(test_alpha),      cmocka_unit_test(test_ring),          cmocka_unit_test(test_circle_straightened),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

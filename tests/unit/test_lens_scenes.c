@@ -100,8 +100,9 @@ static void check_transforms(const char *fields, adcgs_lens lens)
 {
     char json[1024];
     put_picture("a.exr", &lens);
-    snprintf(json, sizeof json, "{\"w\":%d,\"h\":%d,\"fl_x\":%g,\"fl_y\":%g,\"cx\":%g,\"cy\":%g,\"frames\":[" UNSEEN
-             FRAME("a.exr", ",%s") "]}", WIDTH, HEIGHT, lens.fx, lens.fy, lens.cx, lens.cy, fields);
+    snprintf(json, sizeof json,
+             "{\"w\":%d,\"h\":%d,\"fl_x\":%g,\"fl_y\":%g,\"cx\":%g,\"cy\":%g,\"frames\":[" UNSEEN FRAME("a.exr", ",%s") "]}",
+             WIDTH, HEIGHT, lens.fx, lens.fy, lens.cx, lens.cy, fields);
     put_text("transforms.json", json);
     expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
     check_view(&scene->views[ADCGS_SPLIT_TRAIN][0], &lens);
@@ -135,14 +136,14 @@ static void test_models(void **state)
 /** Lenses for all frames, for single frames, and none. w and h describe the original image, or default to its size. */
 static void test_frames(void **state)
 {
-    const adcgs_lens common = {TAKEN, .k = {-0.15, 0.02}}, own = {.width = WIDTH, .height = HEIGHT, .fx = 90, .fy = 90, .cx = 48,
-                                                                 .cy = 36, .k = {0.05, 0.02}};
+    const adcgs_lens common = {TAKEN, .k = {-0.15, 0.02}},
+                     own = {.width = WIDTH, .height = HEIGHT, .fx = 90, .fy = 90, .cx = 48, .cy = 36, .k = {0.05, 0.02}};
     put_picture("a.exr", &common);
     put_picture("b.exr", &own);
-    put_text("transforms.json", "{\"fl_x\":80,\"fl_y\":82,\"cx\":50,\"cy\":34,\"k1\":-0.15,\"k2\":0.02,\"frames\":["
-             FRAME("a.exr", "") "," FRAME("a.exr", "") ","
-             FRAME("b.exr", ",\"w\":96,\"h\":72,\"fl_x\":90,\"fl_y\":90,\"cx\":48,\"cy\":36,\"k1\":0.05") ","
-             FRAME("a.exr", "") "," FRAME("b.exr", ",\"k1\":0,\"k2\":0") "]}");
+    put_text("transforms.json",
+             "{\"fl_x\":80,\"fl_y\":82,\"cx\":50,\"cy\":34,\"k1\":-0.15,\"k2\":0.02,\"frames\":[" FRAME("a.exr", "") "," FRAME(
+                 "a.exr", "") "," FRAME("b.exr", ",\"w\":96,\"h\":72,\"fl_x\":90,\"fl_y\":90,\"cx\":48,\"cy\":36,\"k1\":0."
+                                                 "05") "," FRAME("a.exr", "") "," FRAME("b.exr", ",\"k1\":0,\"k2\":0") "]}");
     expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
     const adcgs_scene_view *views = scene->views[ADCGS_SPLIT_TRAIN];
     check_view(&views[0], &common);
@@ -157,7 +158,8 @@ static void test_frames(void **state)
 
 /* ---- HyperNeRF ---- */
 
-#define CAMERA(more) "{\"orientation\":[[1,0,0],[0,1,0],[0,0,1]],\"position\":[0,0,-5],\"focal_length\":80,\"principal_point\":" \
+#define CAMERA(more)                                                                                            \
+    "{\"orientation\":[[1,0,0],[0,1,0],[0,0,1]],\"position\":[0,0,-5],\"focal_length\":80,\"principal_point\":" \
     "[50,34],\"image_size\":[96,72],\"pixel_aspect_ratio\":1.05," more "}"
 #define BENT "\"skew\":2.5,\"radial_distortion\":[-0.12,0.05,-0.01]"
 
@@ -179,8 +181,8 @@ static void test_moving(void **state)
     }
     expect_good(adcgs_image_write(&mask, in("m.ppm"), 0, &error));
     adcgs_image_free(&mask);
-    put_text("transforms.json", "{\"fl_x\":80,\"fl_y\":82,\"cx\":50,\"cy\":34,\"k1\":-0.15,\"k2\":0.02,\"frames\":["
-             FRAME("a.exr", ",\"moving_path\":\"m.ppm\"") "," FRAME("a.exr", "") "]}");
+    put_text("transforms.json", "{\"fl_x\":80,\"fl_y\":82,\"cx\":50,\"cy\":34,\"k1\":-0.15,\"k2\":0.02,\"frames\":[" FRAME(
+                                    "a.exr", ",\"moving_path\":\"m.ppm\"") "," FRAME("a.exr", "") "]}");
     expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
     const adcgs_scene_view *view = &scene->views[ADCGS_SPLIT_TEST][0];
     const adcgs_camera *c = &view->camera;
@@ -197,8 +199,14 @@ static void test_moving(void **state)
 /** The lens of the original image at 1/divide of full size. */
 static adcgs_lens hypernerf_lens(int divide)
 {
-    return (adcgs_lens){.width = WIDTH / divide, .height = HEIGHT / divide, .fx = 80.0 / divide, .fy = 80.0 * 1.05 / divide,
-                        .cx = 50.0 / divide, .cy = 34.0 / divide, .skew = 2.5 / divide, .k = {-0.12, 0.05, -0.01},
+    return (adcgs_lens){.width = WIDTH / divide,
+                        .height = HEIGHT / divide,
+                        .fx = 80.0 / divide,
+                        .fy = 80.0 * 1.05 / divide,
+                        .cx = 50.0 / divide,
+                        .cy = 34.0 / divide,
+                        .skew = 2.5 / divide,
+                        .k = {-0.12, 0.05, -0.01},
                         .p = {0.004, -0.003}};
 }
 
@@ -269,12 +277,8 @@ static void test_outline(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_models),
-        cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_moving),
-        cmocka_unit_test(test_hypernerf),
-        cmocka_unit_test(test_hypernerf_terms),
-        cmocka_unit_test(test_outline),
+        cmocka_unit_test(test_models),    cmocka_unit_test(test_frames),          cmocka_unit_test(test_moving),
+        cmocka_unit_test(test_hypernerf), cmocka_unit_test(test_hypernerf_terms), cmocka_unit_test(test_outline),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

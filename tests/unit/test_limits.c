@@ -40,18 +40,18 @@ typedef struct nothing {
     int predicted; /**< segments after the first predict all anchors from the one before */
 } nothing;
 
-static const nothing least = { .params = { .k = 1, .n_fv = 1, .chunks = 1 }, .segments = 1, .anchors = 1 };
+static const nothing least = {.params = {.k = 1, .n_fv = 1, .chunks = 1}, .segments = 1, .anchors = 1};
 
 static void zero_net(adcgs_net *net, const adcgs_params *params, int role, int layers, uint32_t width)
 {
     uint32_t n_in, n_out;
     adcgs_role_shape(params, role, &n_in, &n_out);
-    *net = (adcgs_net){ .present = 1, .role = (uint8_t)role, .n_layers = (uint8_t)(n_in == 0 ? 1 : layers) };
+    *net = (adcgs_net){.present = 1, .role = (uint8_t)role, .n_layers = (uint8_t)(n_in == 0 ? 1 : layers)};
     for (int i = 0; i < net->n_layers; i++) {
         adcgs_layer *l = &net->layer[i];
         const uint32_t rows = i == net->n_layers - 1 ? n_out : width;
-        l->w = (adcgs_tensor){ .rows = rows, .cols = n_in, .m = adcgs_alloc(NULL, (size_t)rows * n_in, 4, NULL) };
-        l->b = (adcgs_tensor){ .rows = rows, .cols = 1, .m = adcgs_alloc(NULL, rows, 4, NULL) };
+        l->w = (adcgs_tensor){.rows = rows, .cols = n_in, .m = adcgs_alloc(NULL, (size_t)rows * n_in, 4, NULL)};
+        l->b = (adcgs_tensor){.rows = rows, .cols = 1, .m = adcgs_alloc(NULL, rows, 4, NULL)};
         assert_true(l->w.m && l->b.m);
         n_in = rows;
     }
@@ -106,7 +106,7 @@ static void make_stream(adcgs_stream *stream, const nothing *what)
     }
     for (; stream->n_cameras < what->cameras; stream->n_cameras++)
         stream->cameras[stream->n_cameras] =
-            (adcgs_camera){ .width = 1, .height = 1, .fx = 1, .fy = 1, .near_plane = 1, .cam_to_world = { 1 } };
+            (adcgs_camera){.width = 1, .height = 1, .fx = 1, .fy = 1, .near_plane = 1, .cam_to_world = {1}};
 }
 
 static void set_level(uint8_t *stream, size_t size, int level)
@@ -118,7 +118,7 @@ static void set_level(uint8_t *stream, size_t size, int level)
 /** Writes the zero stream for the level that it needs, then changes its level to 1. */
 static void make_bytes(adcgs_buffer *bytes, const nothing *what)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream;
     adcgs_buffer_init(bytes);
     make_stream(&stream, what);
@@ -139,12 +139,12 @@ typedef struct cost {
 
 static cost decode(const uint8_t *data, size_t size)
 {
-    adcgs_memory memory = { .limit = 0 };
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_memory memory = {.limit = 0};
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream;
-    const adcgs_read_options options = { .cpu = adcgs_cpu_best(), .memory = &memory };
-    adcgs_span s = { .next = data, .left = size };
-    cost c = { .seconds = (double)clock() };
+    const adcgs_read_options options = {.cpu = adcgs_cpu_best(), .memory = &memory};
+    adcgs_span s = {.next = data, .left = size};
+    cost c = {.seconds = (double)clock()};
     c.status = adcgs_stream_read(&stream, adcgs_span_read, &s, &options, NULL, NULL, &error);
     c.seconds = ((double)clock() - c.seconds) / CLOCKS_PER_SEC;
     c.peak = memory.peak;
@@ -158,11 +158,11 @@ static cost decode(const uint8_t *data, size_t size)
 /** The bound of the specification's annex, for streams with one layer of networks in memory at a time. */
 static uint64_t bound_of(const nothing *what, uint64_t weights, uint64_t longest_payload)
 {
-    const adcgs_nets_cost nets = { weights, 0 };
+    const adcgs_nets_cost nets = {weights, 0};
     const adcgs_cost each = adcgs_segment_cost(&what->params, what->anchors, what->depth, &nets);
     const uint64_t models = what->segments + (what->predicted ? 2U : 0U); /* kept and new parts, before they join */
-    return models * each.bytes + 128 * (uint64_t)what->anchors + 16 * weights + 3 * longest_payload
-           + 5 * (uint64_t)what->cameras * 50 + SLACK;
+    return models * each.bytes + 128 * (uint64_t)what->anchors + 16 * weights + 3 * longest_payload +
+           5 * (uint64_t)what->cameras * 50 + SLACK;
 }
 
 #if defined(__has_feature)
@@ -250,7 +250,7 @@ static void test_model_bytes(void **state)
 {
     nothing in = least, out;
     (void)state;
-    in.params = (adcgs_params){ .k = 16, .n_fv = 64, .n_fg = 32, .chunks = 1 };
+    in.params = (adcgs_params){.k = 16, .n_fv = 64, .n_fg = 32, .chunks = 1};
     in.anchors = 4096;
     in.depth = 4;
     in.segments = 6;
@@ -265,7 +265,7 @@ static void test_predicted(void **state)
 {
     nothing in = least, out;
     (void)state;
-    in.params = (adcgs_params){ .k = 16, .n_fv = 64, .n_fg = 32, .chunks = 1 };
+    in.params = (adcgs_params){.k = 16, .n_fv = 64, .n_fg = 32, .chunks = 1};
     in.anchors = 4096;
     in.depth = 4;
     in.segments = 6;
@@ -281,7 +281,7 @@ static void test_work(void **state)
 {
     nothing in = least, out;
     (void)state;
-    in.params = (adcgs_params){ .k = 16, .n_fv = 64, .n_fg = 32, .chunks = 1 };
+    in.params = (adcgs_params){.k = 16, .n_fv = 64, .n_fg = 32, .chunks = 1};
     in.role = ADCGS_ROLE_ENTROPY_FG;
     in.layers = 2;
     in.width = 512;
@@ -305,7 +305,7 @@ static void test_cameras(void **state)
 /** Inserts copies of the only NETW before the last chunk. They repeat known data, but their weights are decoded each time. */
 static void repeat_networks(adcgs_buffer *out, const adcgs_buffer *in, int times)
 {
-    adcgs_found_chunk c, netw = { 0 }, end = { 0 };
+    adcgs_found_chunk c, netw = {0}, end = {0};
     for (size_t pos = ADCGS_SIGNATURE_BYTES; adcgs_next_chunk(in->data, in->size, &pos, &c); end = c)
         netw = c.type == ADCGS_TYPE_NETW ? c : netw;
     adcgs_write_bytes(out, in->data, end.at);
@@ -356,7 +356,7 @@ static cost decode_tiny_networks(uint32_t networks)
 {
     adcgs_buffer bytes, more;
     adcgs_net net;
-    adcgs_found_chunk c, end = { 0 };
+    adcgs_found_chunk c, end = {0};
     make_bytes(&bytes, &least);
     adcgs_buffer_init(&more);
     zero_net(&net, &least.params, ADCGS_ROLE_ENTROPY_FV, 1, 0);
@@ -439,8 +439,14 @@ int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void 
     return fails_now ? 11 : __real_pthread_create(id, attributes, function, arg);
 }
 
-static const adcgs_camera camera = { .width = 33, .height = 20, .fx = 30, .fy = 30, .cx = 16, .cy = 10, .near_plane = 0.01,
-                                     .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4 } };
+static const adcgs_camera camera = {.width = 33,
+                                    .height = 20,
+                                    .fx = 30,
+                                    .fy = 30,
+                                    .cx = 16,
+                                    .cy = 10,
+                                    .near_plane = 0.01,
+                                    .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4}};
 
 /**
  * Opens, renders at two times and closes while allocation n fails, or the start of a thread, which is no failure. Returns true if
@@ -450,8 +456,8 @@ static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
 {
     float rgb[33 * 20 * 3];
     uint8_t pixels[33 * 20 * 4];
-    adcgs_frame frame = { 33, 20, rgb };
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_frame frame = {33, 20, rgb};
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_config config;
     adcgs_decoder *d = NULL;
     adcgs_config_init(&config, sizeof config);
@@ -508,7 +514,7 @@ static void run_tasks(void *tasks, adcgs_task_fn task, void *work, int n)
 static void test_tasks_allocate_nothing(void **state)
 {
     float rgb[33 * 20 * 3];
-    adcgs_frame frame = { 33, 20, rgb };
+    adcgs_frame frame = {33, 20, rgb};
     adcgs_buffer bytes;
     adcgs_config config;
     adcgs_decoder *d;
@@ -561,10 +567,16 @@ static void test_no_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_anchors),     cmocka_unit_test(test_segments), cmocka_unit_test(test_weights),
-        cmocka_unit_test(test_model_bytes), cmocka_unit_test(test_work),     cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_networks),    cmocka_unit_test(test_repeated_networks),
-        cmocka_unit_test(test_predicted),   cmocka_unit_test(test_failing_allocations),
+        cmocka_unit_test(test_anchors),
+        cmocka_unit_test(test_segments),
+        cmocka_unit_test(test_weights),
+        cmocka_unit_test(test_model_bytes),
+        cmocka_unit_test(test_work),
+        cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_networks),
+        cmocka_unit_test(test_repeated_networks),
+        cmocka_unit_test(test_predicted),
+        cmocka_unit_test(test_failing_allocations),
         cmocka_unit_test(test_tasks_allocate_nothing),
         cmocka_unit_test(test_no_threads),
     };

@@ -87,8 +87,8 @@ static const char *in_folder(const char *format, int camera, int frame)
 
 static void put(int camera, int frame)
 {
-    float pixels[3 * 16] = { 0 };
-    const adcgs_image image = { 4, 4, 3, pixels };
+    float pixels[3 * 16] = {0};
+    const adcgs_image image = {4, 4, 3, pixels};
     pixels[0] = (float)frame / FRAMES;
     assert_int_equal(adcgs_image_write(&image, in_folder("c%d-%02d.ppm", camera, frame), 0, &error), ADCGS_OK);
 }
@@ -136,7 +136,7 @@ static int tear_down(void **state)
 static adcgs_live *open_live(double seconds, int unbounded)
 {
     adcgs_live *live = NULL;
-    const adcgs_live_options options = { .seconds = seconds, .unbounded = unbounded, .interrupted = is_interrupted };
+    const adcgs_live_options options = {.seconds = seconds, .unbounded = unbounded, .interrupted = is_interrupted};
     assert_int_equal(adcgs_live_open(&live, folder, &options, &error), ADCGS_OK);
     return live;
 }
@@ -172,7 +172,7 @@ static void test_segments(void **state)
 {
     (void)state;
     for (int unbounded = 0; unbounded < 2; unbounded++) {
-        adcgs_live_segment s = { .scene = NULL };
+        adcgs_live_segment s = {.scene = NULL};
         adcgs_live *live = open_live(0.48, unbounded);
         for (int i = 0; i < FRAMES; i++)
             for (int c = 0; c < CAMERAS; c++)
@@ -192,7 +192,7 @@ static void test_segments(void **state)
 /** Frames that never come, one whose file is no image, and a camera that ends earlier. */
 static void test_gaps(void **state)
 {
-    adcgs_live_segment s = { .scene = NULL };
+    adcgs_live_segment s = {.scene = NULL};
     double time = -1;
     (void)state;
     for (int i = 0; i < FRAMES; i++)
@@ -226,15 +226,18 @@ static void test_going_on(void **state)
 {
     static const struct {
         double last[2], begin;
-    } cases[] = { { { 0.5, 0.95 }, 0.95 }, { { 0.5, 0.95 - 1e-7 }, 0.95 }, { { 0.5, 0.8 }, 0.5 }, { { 0.4, 0.8 }, 0.95 },
-                  { { 0, 0.5 }, 0.5 },     { { 0, 0.15 }, 0 },             { { 0.95, 1.15 }, 0.95 }, { { 0.7, 1.2 }, 2 } };
+    } cases[] = {{{0.5, 0.95}, 0.95}, {{0.5, 0.95 - 1e-7}, 0.95}, {{0.5, 0.8}, 0.5}, {{0.4, 0.8}, 0.95}, {{0, 0.5}, 0.5},
+                 {{0, 0.15}, 0},      {{0.95, 1.15}, 0.95},       {{0.7, 1.2}, 2}};
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
-        adcgs_live_segment s = { .scene = NULL };
+        adcgs_live_segment s = {.scene = NULL};
         adcgs_live *live = NULL;
         const double begin = cases[i].begin;
-        const adcgs_live_options options = { .seconds = 0.48, .interrupted = is_interrupted, .origin = { 1, 2, 3 }, .scale = 4,
-                                             .last = { cases[i].last[0], cases[i].last[1] } };
+        const adcgs_live_options options = {.seconds = 0.48,
+                                            .interrupted = is_interrupted,
+                                            .origin = {1, 2, 3},
+                                            .scale = 4,
+                                            .last = {cases[i].last[0], cases[i].last[1]}};
         for (int f = (int)(10 * begin + 0.01); f < FRAMES; f++)
             for (int c = 0; c < CAMERAS; c++)
                 put(c, f);
@@ -258,7 +261,7 @@ static void test_going_on(void **state)
 /** An interrupt is an end. A single time makes no segment. A missing scene and an unusable scene are errors. */
 static void test_ends(void **state)
 {
-    adcgs_live_segment s = { .scene = NULL };
+    adcgs_live_segment s = {.scene = NULL};
     (void)state;
     for (int i = 0; i < 6; i++)
         for (int c = 0; c < CAMERAS; c++)
@@ -278,7 +281,7 @@ static void test_ends(void **state)
     assert_int_equal(adcgs_live_next(live, &s, &error), ADCGS_ERR_DATA);
     adcgs_live_close(&live);
     start_again();
-    const adcgs_live_options options = { .seconds = 1, .interrupted = is_interrupted };
+    const adcgs_live_options options = {.seconds = 1, .interrupted = is_interrupted};
     assert_int_equal(adcgs_live_open(&live, "/nowhere/scene.json", &options, &error), ADCGS_ERR_IO);
     assert_null(live);
 }
@@ -460,8 +463,8 @@ static void test_past(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shapes), cmocka_unit_test(test_segments), cmocka_unit_test(test_gaps),
-        cmocka_unit_test(test_ends),   cmocka_unit_test(test_growing),  cmocka_unit_test(test_settle),
+        cmocka_unit_test(test_shapes),   cmocka_unit_test(test_segments), cmocka_unit_test(test_gaps),
+        cmocka_unit_test(test_ends),     cmocka_unit_test(test_growing),  cmocka_unit_test(test_settle),
         cmocka_unit_test(test_going_on), cmocka_unit_test(test_past),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

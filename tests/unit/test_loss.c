@@ -87,8 +87,8 @@ typedef struct pictures {
 static pictures make(int w, int h)
 {
     const size_t n = 3 * (size_t)w * (size_t)h;
-    pictures p = {
-        .w = w, .h = h, .x = malloc(n * 4), .y = malloc(n * 4), .grad = malloc(n * 4), .dx = malloc(n * 8), .dy = malloc(n * 8)};
+    pictures p =
+        {.w = w, .h = h, .x = malloc(n * 4), .y = malloc(n * 4), .grad = malloc(n * 4), .dx = malloc(n * 8), .dy = malloc(n * 8)};
     uint32_t seed = 12345u + (uint32_t)w;
     for (size_t i = 0; i < n; i++) {
         seed = seed * 1664525u + 1013904223u;
@@ -120,7 +120,7 @@ static adcgs_loss_value run(adcgs_cpu_level cpu, int threads, pictures *p, float
     adcgs_loss_value value;
     assert_int_equal(adcgs_pool_create(&pool, threads, NULL), ADCGS_OK);
     assert_int_equal(adcgs_loss_create(&loss, cpu, pool, NULL), ADCGS_OK);
-    const adcgs_loss_shares shares = { weight, (float)SQUARE };
+    const adcgs_loss_shares shares = {weight, (float)SQUARE};
     for (int twice = 0; twice < 2; twice++) /* the second run uses a used workspace */
         assert_int_equal(adcgs_loss_image(loss, p->x, p->y, p->w, p->h, &shares, p->grad, &value, NULL), ADCGS_OK);
     adcgs_loss_free(&loss);

@@ -83,13 +83,13 @@ static void test_kinds(void **state)
     } cases[] = {
         {1, {0, 1, 1}, {0, 0, 0}, 0, W / 2},
         {3, {0, 1, 1}, {0, 0, 0}, 0, W / 2},
-        {3, {0, 0.01f, 1}, {0, 0, 0}, 0, W / 2},        /* any colour but black counts */
-        {4, {0, 1, 1}, {1, 1, 1}, 0, W / 2},            /* alpha is constant and ignored */
-        {4, {0, 1, 1}, {0, 0, 0}, 0, W / 2},            /* here too */
-        {4, {1, 1, 1}, {0, 1, 1}, 0, W / 2},            /* white paint */
+        {3, {0, 0.01f, 1}, {0, 0, 0}, 0, W / 2},         /* any colour but black counts */
+        {4, {0, 1, 1}, {1, 1, 1}, 0, W / 2},             /* alpha is constant and ignored */
+        {4, {0, 1, 1}, {0, 0, 0}, 0, W / 2},             /* here too */
+        {4, {1, 1, 1}, {0, 1, 1}, 0, W / 2},             /* white paint */
         {4, {0.3f, 0.6f, 0.1f}, {0, 1, 0.5f}, 3, W / 2}, /* an object that was cut out */
-        {4, {0, 0, 0}, {0, 1, 1}, 0, W / 2},            /* black paint, the same in all pixels */
-        {4, {0, 1, 1}, {0, 1, 0.2f}, 3, W / 2},         /* both agree */
+        {4, {0, 0, 0}, {0, 1, 1}, 0, W / 2},             /* black paint, the same in all pixels */
+        {4, {0, 1, 1}, {0, 1, 0.2f}, 3, W / 2},          /* both agree */
         {2, {1, 1, 1}, {0, 1, 1}, 0, W / 2},
         {2, {0, 1, 1}, {1, 1, 1}, 0, W / 2},
         {4, {1, 1, 1}, {1, 1, 1}, 0, 0},
@@ -170,10 +170,8 @@ static void test_nothing_left(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_sizes, clean),
-        cmocka_unit_test_teardown(test_jpeg, clean),
-        cmocka_unit_test_teardown(test_nothing_left, clean),
-        cmocka_unit_test_teardown(test_kinds, clean),
+        cmocka_unit_test_teardown(test_sizes, clean),        cmocka_unit_test_teardown(test_jpeg, clean),
+        cmocka_unit_test_teardown(test_nothing_left, clean), cmocka_unit_test_teardown(test_kinds, clean),
         cmocka_unit_test_teardown(test_both, clean),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -242,7 +242,13 @@ static void test_psnr(void **state)
     assert_true(isnan(adcgs_psnr_from_mse(NAN)));
 }
 
-static const adcgs_camera camera = {.width = 64, .height = 48, .fx = 40, .fy = 50, .cx = 30, .cy = 20, .near_plane = 0.1,
+static const adcgs_camera camera = {.width = 64,
+                                    .height = 48,
+                                    .fx = 40,
+                                    .fy = 50,
+                                    .cx = 30,
+                                    .cy = 20,
+                                    .near_plane = 0.1,
                                     .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
 
 static void expect_rectangle(const adcgs_box *box, const adcgs_camera *c, int left, int top, int right, int bottom)
@@ -260,8 +266,8 @@ static void test_rectangle(void **state)
     expect_rectangle(&(adcgs_box){{-1, -1, 4}, {1, 1, 9}}, &camera, 20, 7, 40, 33);
     expect_rectangle(&(adcgs_box){{-9, -1, 4}, {1, 9, 9}}, &camera, 0, 7, 40, 48);
     expect_rectangle(&(adcgs_box){{0, 0, 4}, {1e-9, 1e-9, 4.1}}, &camera, 30, 20, 31, 21);
-    expect_rectangle(&(adcgs_box){{-1, -1, -1}, {1, 1, 9}}, &camera, 0, 0, 64, 48);   /* around the camera */
-    expect_rectangle(&(adcgs_box){{2, -1, -9}, {3, 1, 10}}, &camera, 38, 0, 64, 48);  /* from the camera's side to far ahead */
+    expect_rectangle(&(adcgs_box){{-1, -1, -1}, {1, 1, 9}}, &camera, 0, 0, 64, 48);  /* around the camera */
+    expect_rectangle(&(adcgs_box){{2, -1, -9}, {3, 1, 10}}, &camera, 38, 0, 64, 48); /* from the camera's side to far ahead */
     assert_false(adcgs_box_rectangle(&(adcgs_box){{-1, -1, -9}, {1, 1, -1}}, &camera, r));   /* behind */
     assert_false(adcgs_box_rectangle(&(adcgs_box){{-1, -1, -1}, {1, 1, 0.09}}, &camera, r)); /* nearer than the near plane */
     assert_false(adcgs_box_rectangle(&(adcgs_box){{9, -1, 4}, {10, 1, 5}}, &camera, r));     /* to the right */
@@ -368,8 +374,8 @@ static void test_crop(void **state)
     static float truth[3 * W * H], decoded[3 * W * H], small_truth[3 * 20 * 26], small_decoded[3 * 20 * 26];
     const adcgs_box box = {{-1, -1, 4}, {1, 1, 9}}, aside = {{9, -1, 4}, {10, 1, 5}}; /* 20..40 x 7..33, as above */
     const adcgs_scene_view view = {.camera = camera};
-    const adcgs_view_score score = {.view = &view, .seen = &view.camera, .width = W, .height = H, .decoded = decoded,
-                                    .truth = truth};
+    const adcgs_view_score score =
+        {.view = &view, .seen = &view.camera, .width = W, .height = H, .decoded = decoded, .truth = truth};
     adcgs_crop crop, again;
     double ssim;
     for (int i = 0; i < 3 * W * H; i++) {
@@ -436,7 +442,7 @@ static uint32_t details_of(float (*value)(int), int width, int height)
 
 static void test_detail(void **state)
 {
-    static float gap[3 * 4] = { 0 };
+    static float gap[3 * 4] = {0};
     uint32_t n;
     (void)state;
     assert_int_equal(details_of(strong_stripes, WIDE, HIGH), WIDE / 2 * (HIGH / 2));
@@ -454,10 +460,10 @@ static void test_detail(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ssim),    cmocka_unit_test(test_ms_ssim),       cmocka_unit_test(test_ms_ssim_values),
-        cmocka_unit_test(test_fitted),  cmocka_unit_test(test_detail),
-        cmocka_unit_test(test_psnr),          cmocka_unit_test(test_rectangle),
-        cmocka_unit_test(test_any_box), cmocka_unit_test(test_box_of_points), cmocka_unit_test(test_crop),
+        cmocka_unit_test(test_ssim),      cmocka_unit_test(test_ms_ssim), cmocka_unit_test(test_ms_ssim_values),
+        cmocka_unit_test(test_fitted),    cmocka_unit_test(test_detail),  cmocka_unit_test(test_psnr),
+        cmocka_unit_test(test_rectangle), cmocka_unit_test(test_any_box), cmocka_unit_test(test_box_of_points),
+        cmocka_unit_test(test_crop),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

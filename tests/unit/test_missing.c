@@ -17,8 +17,11 @@ enum { CAMERAS = 3, SIDE = 128, FOCAL = 100, ACROSS = 3, DOWN = 4, LAMPS = ACROS
 static adcgs_scene_view views[CAMERAS];
 static double dark[POINTS][3];
 static uint8_t black[POINTS][3];
-static adcgs_scene scene = { .views = { views }, .n_views = { CAMERAS }, .n_times = 1, .rate = { 1, 1 },
-                              .points = { .n = POINTS, .coloured = 1 } };
+static adcgs_scene scene = {.views = {views},
+                            .n_views = {CAMERAS},
+                            .n_times = 1,
+                            .rate = {1, 1},
+                            .points = {.n = POINTS, .coloured = 1}};
 
 /** Lamps as on a bulging wall, not quite in rows. All cameras see those in the middle; only two see those on the left. */
 static void lamp_at(int cluster, int i, double x[3])
@@ -49,8 +52,14 @@ static int put_scene(void **state)
         adcgs_scene_view *v = &views[i];
         char name[16];
         adcgs_image image;
-        v->camera = (adcgs_camera){ .width = SIDE, .height = SIDE, .fx = FOCAL, .fy = FOCAL, .cx = SIDE / 2, .cy = SIDE / 2,
-                                    .near_plane = 0.01, .cam_to_world = { 1, 0, 0, i - 1, 0, 1, 0, 0, 0, 0, 1, 0 } };
+        v->camera = (adcgs_camera){.width = SIDE,
+                                   .height = SIDE,
+                                   .fx = FOCAL,
+                                   .fy = FOCAL,
+                                   .cx = SIDE / 2,
+                                   .cy = SIDE / 2,
+                                   .near_plane = 0.01,
+                                   .cam_to_world = {1, 0, 0, i - 1, 0, 1, 0, 0, 0, 0, 1, 0}};
         snprintf(name, sizeof name, "%d.ppm", i);
         v->path = strdup(in(name));
         assert_int_equal(adcgs_image_alloc(&image, SIDE, SIDE, 3, name, &error), ADCGS_OK);
@@ -60,7 +69,7 @@ static int put_scene(void **state)
         adcgs_image_free(&image);
     }
     for (int i = 0; i < POINTS; i++) /* a dark ground */
-        memcpy(dark[i], (const double[]){ 0.25 * (i % 8 - 4), 1.2, 2 + 0.3 * (double)(i / 8) }, sizeof dark[i]);
+        memcpy(dark[i], (const double[]){0.25 * (i % 8 - 4), 1.2, 2 + 0.3 * (double)(i / 8)}, sizeof dark[i]);
     scene.points.position = dark;
     scene.points.colour = black;
     return 0;
@@ -80,7 +89,7 @@ static void lamps_are_found_where_they_are(void **state)
     static adcgs_residual places[MOST];
     adcgs_train_config config;
     adcgs_trainer *t;
-    uint32_t n, beside = 0, found[2] = { 0, 0 };
+    uint32_t n, beside = 0, found[2] = {0, 0};
     assert_int_equal(adcgs_train_preset(&config, "draft", &error), ADCGS_OK);
     assert_int_equal(adcgs_trainer_create(&t, &scene, &config, adcgs_cpu_best(), NULL, &error), ADCGS_OK);
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
@@ -109,6 +118,6 @@ static void lamps_are_found_where_they_are(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(lamps_are_found_where_they_are) };
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lamps_are_found_where_they_are)};
     return cmocka_run_group_tests(tests, put_scene, remove_scene);
 }

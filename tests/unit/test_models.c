@@ -45,8 +45,8 @@ static void put_model_at(const double place[3], int n)
     for (int i = 0; i < RIG_POINTS; i++) {
         double x[3];
         rig_point(i, x);
-        at += (size_t)sprintf(text + at, "%d %.17g %.17g %.17g 9 9 9 0.5\n", i, x[0] + place[0], x[1] + place[1],
-                              x[2] + place[2]);
+        at +=
+            (size_t)sprintf(text + at, "%d %.17g %.17g %.17g 9 9 9 0.5\n", i, x[0] + place[0], x[1] + place[1], x[2] + place[2]);
     }
     put_text("sparse/points3D.txt", text);
     free(text);
@@ -125,8 +125,8 @@ static void expect_nine(void)
 static void test_lines(void **state)
 {
     static const char *const ends[] = {"\n", "\r\n", "\r", "\r\r\n"};
-    static const char *const seconds[] = {"", " ", "1.5 2.5 -1", "1 2 3 4.5 5 -1 \t", "# 1 2", "# a\n1 2 -1",
-                                          "\t# of points: 0\n"};
+    static const char *const seconds[] = {"",      " ",           "1.5 2.5 -1",        "1 2 3 4.5 5 -1 \t",
+                                          "# 1 2", "# a\n1 2 -1", "\t# of points: 0\n"};
     static char longer[6000];
     put_images(9, "images", "%d.ppm");
     put_model_at((const double[3]){0.0, 0.0, 0.0}, 9);
@@ -291,10 +291,10 @@ static void test_mixed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_far, clean),     cmocka_unit_test_teardown(test_lines, clean),
+        cmocka_unit_test_teardown(test_far, clean),       cmocka_unit_test_teardown(test_lines, clean),
         cmocka_unit_test_teardown(test_bad_lines, clean), cmocka_unit_test_teardown(test_several, clean),
-        cmocka_unit_test_teardown(test_places, clean),  cmocka_unit_test_teardown(test_folders, clean),
-        cmocka_unit_test_teardown(test_likeness, clean), cmocka_unit_test_teardown(test_mixed, clean),
+        cmocka_unit_test_teardown(test_places, clean),    cmocka_unit_test_teardown(test_folders, clean),
+        cmocka_unit_test_teardown(test_likeness, clean),  cmocka_unit_test_teardown(test_mixed, clean),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

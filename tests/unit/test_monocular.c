@@ -12,16 +12,16 @@
 #define SIDE 128
 /* The box of film-cross80: its centre at time 0, and the distance to its place at time 1, in units of the data set. */
 #define CROSSES (0.80 * 4.2 * 2.0 / 2.5)
-static const double begin[3] = { -0.5 * CROSSES, -0.10, 0.26 };
+static const double begin[3] = {-0.5 * CROSSES, -0.10, 0.26};
 
 static adcgs_scene *scene;
 static adcgs_stereo found;
-static adcgs_stereo_options options = { .still = 3000, .moving = 2000 };
+static adcgs_stereo_options options = {.still = 3000, .moving = 2000};
 static adcgs_pool *pool;
 
 static int setup(void **state)
 {
-    const adcgs_scenes_options film = { .name = "film-cross80", .width = SIDE, .height = SIDE, .format = "ppm" };
+    const adcgs_scenes_options film = {.name = "film-cross80", .width = SIDE, .height = SIDE, .format = "ppm"};
     return make_folder(state) || adcgs_pool_create(&pool, 2, &error) != ADCGS_OK ||
            adcgs_scenes_write(folder, &film, pool, NULL, NULL, &error) != ADCGS_OK ||
            adcgs_scene_open(&scene, folder, NULL, &error) != ADCGS_OK ||
@@ -92,7 +92,7 @@ static void what_moves_is_where_it_is(void **state)
     (void)state;
     assert_true(found.n_frames >= 20 && found.n_moving > 1000);
     for (uint32_t m = 0; m < found.n_frames; m++, first = last) {
-        double sum[3] = { 0, 0, 0 }, x[3], off = 0;
+        double sum[3] = {0, 0, 0}, x[3], off = 0;
         uint32_t n = 0;
         for (last = first; last < found.n_moving && found.moving[last].t <= found.frame_time[m]; last++) {
             to_world(found.moving[last].x, x);

@@ -92,7 +92,8 @@ static void check_mask(const adcgs_scene_view *view, double motion)
     memcpy(camera.to_world, view->camera.cam_to_world, sizeof camera.to_world);
     adcgs_pose_other_axes(camera.to_world);
     assert_int_equal(adcgs_trace_cover(entry->objects, entry->n_objects, entry->moving, &camera,
-                                       motion * view->time / scene->duration, SIZE, SIZE, 3, NULL, expected, &error), ADCGS_OK);
+                                       motion * view->time / scene->duration, SIZE, SIZE, 3, NULL, expected, &error),
+                     ADCGS_OK);
     expect_good(adcgs_scene_load_moving(view, 1, &moving, &error));
     for (int i = 0; i < PLANE; i++) {
         n += moving[i];

@@ -66,8 +66,8 @@ static void code_extremes(adcgs_range_enc *e, adcgs_range_dec *d)
     for (int shape = 0; shape < ADCGS_SHAPES; shape++)
         for (int si = 1; si < ADCGS_SIGMA_LEVELS; si++) {
             const int support = adcgs_table_support(shape, si), largest = adcgs_value_max(shape, si);
-            const int values[] = { 0, 1, -1, support, -support, support + 1, -support - 1, support + 2, 1000, -1023, 32767,
-                                   -32768, largest - 1, largest, -largest };
+            const int values[] = {0,    1,     -1,    support, -support,    support + 1, -support - 1, support + 2,
+                                  1000, -1023, 32767, -32768,  largest - 1, largest,     -largest};
             for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)
                 if (e)
                     adcgs_value_enc(e, shape, si, values[i]);
@@ -138,7 +138,7 @@ static void test_damaged_values_end(void **state)
 
 static void make_tensor(adcgs_tensor *t, uint32_t rows, uint32_t cols)
 {
-    *t = (adcgs_tensor){ .rows = rows, .cols = cols };
+    *t = (adcgs_tensor){.rows = rows, .cols = cols};
     t->m = adcgs_alloc(NULL, (size_t)rows * cols, sizeof *t->m, NULL);
     assert_non_null(t->m);
 }
@@ -146,7 +146,7 @@ static void make_tensor(adcgs_tensor *t, uint32_t rows, uint32_t cols)
 /* A network whose rows are as large as the bound allows. */
 static void make_net(adcgs_net *net, int n_layers, const uint32_t *sizes, uint64_t *seed)
 {
-    *net = (adcgs_net){ .present = 1, .n_layers = (uint8_t)n_layers };
+    *net = (adcgs_net){.present = 1, .n_layers = (uint8_t)n_layers};
     net->in_shift = (uint8_t)(random32(seed) % 9);
     net->sigma_shift = (uint8_t)(random32(seed) % 25);
     net->sigma_offset = (int16_t)draw(seed, 64);
@@ -223,7 +223,7 @@ static void check_net(const adcgs_net *net, uint64_t *seed)
     if (n_in)
         x[0] = INT16_MIN;
     for (int level = ADCGS_CPU_SCALAR; level <= (int)adcgs_cpu_best(); level++) {
-        adcgs_error error = { 0 };
+        adcgs_error error = {0};
         adcgs_e24 *e24;
         if (adcgs_e24_create(&e24, net, (adcgs_cpu_level)level, NULL, &error) != ADCGS_OK)
             fail_msg("%s", error.text);
@@ -261,11 +261,11 @@ static void make_steps(adcgs_net *net)
 static void test_e24_equals_reference(void **state)
 {
     (void)state;
-    static const uint32_t sizes[][5] = { { 1, 2 },         { 0, 14 },         { 7, 5, 6 },
-                                         { 32, 48, 64 },   { 33, 33, 33, 10 }, { 64, 24, 24, 24, 32 },
-                                         { 1024, 13, 512 }, { 512, 512, 2 },    { 80, 1, 1, 22 },
-                                         { 32, 24, 5 } };
-    static const int layers[] = { 1, 1, 2, 2, 3, 4, 2, 2, 3, 2 };
+    static const uint32_t sizes[][5] = {{1, 2},          {0, 14},          {7, 5, 6},
+                                        {32, 48, 64},    {33, 33, 33, 10}, {64, 24, 24, 24, 32},
+                                        {1024, 13, 512}, {512, 512, 2},    {80, 1, 1, 22},
+                                        {32, 24, 5}};
+    static const int layers[] = {1, 1, 2, 2, 3, 4, 2, 2, 3, 2};
     uint64_t seed = 11;
     for (size_t i = 0; i < ADCGS_COUNTOF(layers); i++)
         for (int trial = 0; trial < 4; trial++) {
@@ -290,12 +290,12 @@ static adcgs_status load_net(const adcgs_net *net)
 static void test_e24_row_bound(void **state)
 {
     (void)state;
-    static const uint32_t sizes[] = { 5, 4, 2 };
+    static const uint32_t sizes[] = {5, 4, 2};
     uint64_t seed = 12;
     adcgs_net net;
     make_net(&net, 2, sizes, &seed);
     /* hidden row 3: 2047 * 8000 + 2^9 + |b| = 2^24 - 1 exactly */
-    static const int32_t row[] = { 2047, -2047, 2047, -1859, 0 };
+    static const int32_t row[] = {2047, -2047, 2047, -1859, 0};
     memcpy(net.layer[0].w.m + 15, row, sizeof row);
     net.layer[0].shift = 10;
     net.layer[0].b.m[3] = -((1 << 24) - 1 - 2047 * 8000 - 512);
@@ -337,7 +337,7 @@ static void test_e24_row_bound(void **state)
 static void test_e24_steps_bound(void **state)
 {
     (void)state;
-    static const uint32_t sizes[] = { 5, 3 };
+    static const uint32_t sizes[] = {5, 3};
     uint64_t seed = 13;
     adcgs_net net;
     make_net(&net, 1, sizes, &seed);
@@ -359,7 +359,7 @@ static void test_e24_steps_bound(void **state)
 static void test_e24_known_answer(void **state)
 {
     (void)state;
-    adcgs_error error = { 0 };
+    adcgs_error error = {0};
     if (adcgs_e24_check(&error) != ADCGS_OK)
         fail_msg("%s", error.text);
 }
@@ -430,8 +430,8 @@ static double gauss(uint64_t *seed)
 static void test_integer_tensors(void **state)
 {
     (void)state;
-    static const int32_t extremes[] = { 0,    1,     -1,        2,         -2,         3,       4,     -65535,
-                                        2047, -2047, INT32_MAX, INT32_MIN, -INT32_MAX, 1 << 30, 65536 };
+    static const int32_t extremes[] = {0,    1,     -1,        2,         -2,         3,       4,    -65535,
+                                       2047, -2047, INT32_MAX, INT32_MIN, -INT32_MAX, 1 << 30, 65536};
     uint64_t seed = 21;
     adcgs_tensor t;
     make_tensor(&t, 5, 3);
@@ -479,9 +479,9 @@ static void test_weights_are_cheap(void **state)
 static void test_float_tensors(void **state)
 {
     (void)state;
-    static const uint32_t bits[] = { 0,          0x80000000, 1,          0x80000001, 0x007fffff,
-                                     0x00800000, 0x7f7fffff, 0xff7fffff, 0x3f800000, 0x3f800001,
-                                     0x3f800002, 0x3fc00000, 0x3fe00000, 0xbf000000, 0x40490fdb };
+    static const uint32_t bits[] = {0,          0x80000000, 1,          0x80000001, 0x007fffff,
+                                    0x00800000, 0x7f7fffff, 0xff7fffff, 0x3f800000, 0x3f800001,
+                                    0x3f800002, 0x3fc00000, 0x3fe00000, 0xbf000000, 0x40490fdb};
     adcgs_tensor t;
     make_tensor(&t, 3, 5);
     t.mode = 1;
@@ -499,12 +499,17 @@ static void test_float_tensors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tables_equal_csv),  cmocka_unit_test(test_values_round_trip),
-        cmocka_unit_test(test_value_cost),        cmocka_unit_test(test_damaged_values_end),
-        cmocka_unit_test(test_shr),               cmocka_unit_test(test_e24_equals_reference),
+        cmocka_unit_test(test_tables_equal_csv),
+        cmocka_unit_test(test_values_round_trip),
+        cmocka_unit_test(test_value_cost),
+        cmocka_unit_test(test_damaged_values_end),
+        cmocka_unit_test(test_shr),
+        cmocka_unit_test(test_e24_equals_reference),
         cmocka_unit_test(test_e24_row_bound),
-        cmocka_unit_test(test_e24_steps_bound),     cmocka_unit_test(test_e24_known_answer),
-        cmocka_unit_test(test_integer_tensors),   cmocka_unit_test(test_weights_are_cheap),
+        cmocka_unit_test(test_e24_steps_bound),
+        cmocka_unit_test(test_e24_known_answer),
+        cmocka_unit_test(test_integer_tensors),
+        cmocka_unit_test(test_weights_are_cheap),
         cmocka_unit_test(test_float_tensors),
     };
     return cmocka_run_group_tests_name("net", tests, NULL, NULL);

@@ -195,7 +195,7 @@ static void lattices_follow_lambda(void **state)
     assert_non_null(before);
     memcpy(before, t->f->param[ADCGS_P_OMEGA].p, t->f->param[ADCGS_P_OMEGA].n * sizeof *before);
     for (int i = 0; i < 3; i++) {
-        t->lambda = (const double[]){ 1e-4, 1, 100 }[i];
+        t->lambda = (const double[]){1e-4, 1, 100}[i];
         assert_int_equal(adcgs_weight_steps_choose(t, &error), ADCGS_OK);
         sum[i] = sum_of_lattices(t->f);
     }
@@ -352,7 +352,7 @@ static void outputs(adcgs_trainer *t, float *prim, double *bits)
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
         if (t->f->mlp[i].n)
             adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, 1);
-    adcgs_pass_forward(t->pass, t->f, 0.3f, &(adcgs_pass_mode){ .deform = 1 });
+    adcgs_pass_forward(t->pass, t->f, 0.3f, &(adcgs_pass_mode){.deform = 1});
     memcpy(prim, t->pass->prim, ADCGS_ROWS * (size_t)t->pass->primitives.n * sizeof *prim);
     adcgs_pass_rate(t->pass, t->f, &rate);
     *bits = rate.total;

@@ -67,8 +67,8 @@ static adcgs_train_config short_config(void)
 
 static adcgs_status try_scene(void)
 {
-    const adcgs_scene_options options = { .points_path = NULL };
-    const adcgs_image_store_config pictures_config = { .split = ADCGS_SPLIT_TRAIN, .divide = 2 };
+    const adcgs_scene_options options = {.points_path = NULL};
+    const adcgs_image_store_config pictures_config = {.split = ADCGS_SPLIT_TRAIN, .divide = 2};
     adcgs_scene *own = NULL;
     adcgs_image_store *pictures = NULL;
     adcgs_status status = adcgs_scene_open(&own, folder, &options, &error);
@@ -150,7 +150,7 @@ static void each_fails(adcgs_status (*attempt)(void), long most)
     const long n = atomic_load(&allocations), tries = ADCGS_MIN(n, most);
     assert_true(n > 20);
     for (long i = 0; i < tries; i++) {
-        error = (adcgs_error){ ADCGS_OK, "" };
+        error = (adcgs_error){ADCGS_OK, ""};
         atomic_store(&left, n * i / tries);
         const adcgs_status status = attempt();
         atomic_store(&left, -1);

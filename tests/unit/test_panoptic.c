@@ -269,8 +269,8 @@ static void test_other_folders(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_good, clean), cmocka_unit_test_teardown(test_bad, clean),
-        cmocka_unit_test_teardown(test_npz, clean), cmocka_unit_test_teardown(test_record3d, clean),
+        cmocka_unit_test_teardown(test_good, clean),          cmocka_unit_test_teardown(test_bad, clean),
+        cmocka_unit_test_teardown(test_npz, clean),           cmocka_unit_test_teardown(test_record3d, clean),
         cmocka_unit_test_teardown(test_other_folders, clean),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

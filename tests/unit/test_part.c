@@ -13,9 +13,12 @@ static adcgs_error error;
 enum { CAMERAS = 2, MOMENTS = 11, VIEWS = CAMERAS * MOMENTS };
 
 static adcgs_scene_view views[VIEWS], tests[1];
-static adcgs_scene scene = { .directory = "here", .views = { [ADCGS_SPLIT_TRAIN] = views, [ADCGS_SPLIT_TEST] = tests },
-                             .n_views = { [ADCGS_SPLIT_TRAIN] = VIEWS, [ADCGS_SPLIT_TEST] = 1 }, .duration = 1,
-                             .n_times = MOMENTS, .rate = { 10, 1 } };
+static adcgs_scene scene = {.directory = "here",
+                            .views = {[ADCGS_SPLIT_TRAIN] = views, [ADCGS_SPLIT_TEST] = tests},
+                            .n_views = {[ADCGS_SPLIT_TRAIN] = VIEWS, [ADCGS_SPLIT_TEST] = 1},
+                            .duration = 1,
+                            .n_times = MOMENTS,
+                            .rate = {10, 1}};
 
 /** A tenth of a second from one frame to the next, in mixed order. */
 static int set_up(void **state)
@@ -31,7 +34,7 @@ static int set_up(void **state)
 /** Expects these crossfades of the first and the second last part; the last part has none. */
 static void expect_reach(double seconds, double fade, double first, double late)
 {
-    adcgs_cuts cuts = { .n = 0 };
+    adcgs_cuts cuts = {.n = 0};
     assert_int_equal(adcgs_cuts_find(&cuts, &scene, seconds, fade, &error), ADCGS_OK);
     assert_float_equal(cuts.reach[0], first, 1e-12);
     assert_float_equal(cuts.reach[cuts.n - 2], late, 1e-12);
@@ -52,7 +55,7 @@ static void parts_reach_to_moments(void **state)
 
 static void expect_cuts(double seconds, const double *at, uint32_t n, uint32_t moments)
 {
-    adcgs_cuts cuts = { .n = 0 };
+    adcgs_cuts cuts = {.n = 0};
     assert_int_equal(adcgs_cuts_find(&cuts, &scene, seconds, 0, &error), ADCGS_OK);
     assert_int_equal(cuts.n, n);
     assert_int_equal(cuts.moments, moments);
@@ -64,14 +67,14 @@ static void expect_cuts(double seconds, const double *at, uint32_t n, uint32_t m
 static void cuts_lie_at_moments(void **state)
 {
     (void)state;
-    expect_cuts(0.5, (const double[]){ 0, 0.5, 1 }, 2, 6);
-    expect_cuts(0.33, (const double[]){ 0, 0.3, 0.7, 1 }, 3, 4);
-    expect_cuts(0.4, (const double[]){ 0, 0.4, 0.8, 1 }, 3, 3); /* the rest is half of a part */
-    expect_cuts(0.47, (const double[]){ 0, 0.5, 1 }, 2, 6);      /* here less */
-    expect_cuts(0.1, (const double[]){ 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1 }, 10, 2);
-    expect_cuts(1e-9, (const double[]){ 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1 }, 10, 2);
-    expect_cuts(1, (const double[]){ 0, 1 }, 1, MOMENTS);
-    expect_cuts(1e6, (const double[]){ 0, 1 }, 1, MOMENTS);
+    expect_cuts(0.5, (const double[]){0, 0.5, 1}, 2, 6);
+    expect_cuts(0.33, (const double[]){0, 0.3, 0.7, 1}, 3, 4);
+    expect_cuts(0.4, (const double[]){0, 0.4, 0.8, 1}, 3, 3); /* the rest is half of a part */
+    expect_cuts(0.47, (const double[]){0, 0.5, 1}, 2, 6);     /* here less */
+    expect_cuts(0.1, (const double[]){0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1}, 10, 2);
+    expect_cuts(1e-9, (const double[]){0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1}, 10, 2);
+    expect_cuts(1, (const double[]){0, 1}, 1, MOMENTS);
+    expect_cuts(1e6, (const double[]){0, 1}, 1, MOMENTS);
 }
 
 /**
@@ -80,8 +83,8 @@ static void cuts_lie_at_moments(void **state)
 static void parts_share_what_is_at_cuts(void **state)
 {
     (void)state;
-    adcgs_cuts cuts = { .n = 0 };
-    int seen[VIEWS] = { 0 };
+    adcgs_cuts cuts = {.n = 0};
+    int seen[VIEWS] = {0};
     assert_int_equal(adcgs_cuts_find(&cuts, &scene, 0.42, 0.1, &error), ADCGS_OK);
     for (uint32_t i = 0; i < cuts.n; i++) {
         adcgs_scene part;
@@ -107,7 +110,7 @@ static void one_moment_is_not_cut(void **state)
 {
     (void)state;
     adcgs_scene still = scene;
-    adcgs_cuts cuts = { .n = 0 };
+    adcgs_cuts cuts = {.n = 0};
     still.n_views[ADCGS_SPLIT_TRAIN] = 1;
     assert_int_equal(adcgs_cuts_find(&cuts, &still, 0.5, 0.1, &error), ADCGS_ERR_DATA);
     assert_non_null(strstr(error.text, "only one distinct time"));

@@ -11,8 +11,8 @@
 #define KEYS 5
 #define DEGREE 0.017453292519943295
 
-static const adcgs_info info = {.time_start = 1.0, .time_end = 9.0, .frame_rate = 10.0, .scene_scale = 1.0,
-                                .axes = "right-handed, z up", .units = "metre"};
+static const adcgs_info info =
+    {.time_start = 1.0, .time_end = 9.0, .frame_rate = 10.0, .scene_scale = 1.0, .axes = "right-handed, z up", .units = "metre"};
 static const adcgs_camera like = {.width = 64, .height = 48, .fx = 70, .fy = 71, .cx = 30, .cy = 25, .near_plane = 0.125};
 
 static double uniform(uint64_t *state)
@@ -148,7 +148,7 @@ static void test_chan_by_hand(void **state)
     assert_true(fabs(frames.frame[0].camera.fy - 24.0) < 1e-9 && fabs(frames.frame[0].camera.fx - 24.0) < 1e-9);
     assert_true(pose_difference(frames.frame[1].camera.cam_to_world, left) < 1e-12);
     assert_true(frames.frame[1].camera.fx == like.fx && frames.frame[1].camera.cx == like.cx); /* no lens in the file */
-    assert_true(fabs(frames.frame[2].camera.cam_to_world[6] - 1.0) < 1e-12); /* it looks along y */
+    assert_true(fabs(frames.frame[2].camera.cam_to_world[6] - 1.0) < 1e-12);                   /* it looks along y */
     adcgs_camera_path_free(&frames);
     adcgs_camera_path_request request = {.has_times = 1, .begin = 7.0, .end = 7.0};
     assert_int_equal(read_path("c.chan", &frames, &request), ADCGS_OK);
@@ -255,8 +255,10 @@ static void test_bad(void **state)
         {"a.usda", OPS(""), "xformOp:a: named in xformOpOrder, but", ADCGS_ERR_DATA},
         {"a.usda", OPS("float xformOp:a = 1\n"), "xformOp:a: an operation that", ADCGS_ERR_UNSUPPORTED},
         {"a.usda", CAMERA("uniform token[] xformOpOrder = [\"!invert!xformOp:a\"]\n"), "!invert!", ADCGS_ERR_UNSUPPORTED},
-        {"a.usda", CAMERA("matrix4d xformOp:transform = ((1,0,0,0),(1,1,0,0),(0,0,1,0),(0,0,0,1))\n"
-                          "uniform token[] xformOpOrder = [\"xformOp:transform\"]\n"), "the camera's pose", ADCGS_ERR_DATA},
+        {"a.usda",
+         CAMERA("matrix4d xformOp:transform = ((1,0,0,0),(1,1,0,0),(0,0,1,0),(0,0,0,1))\n"
+                "uniform token[] xformOpOrder = [\"xformOp:transform\"]\n"),
+         "the camera's pose", ADCGS_ERR_DATA},
         {"a.usda", "#usda 1.0\n(\n startTimeCode = 0\n endTimeCode = 1e12\n)\ndef Camera \"c\" {}\n", "frames requested",
          ADCGS_ERR_DATA},
         {"a.usda", "#usda 1.0\n(\n timeCodesPerSecond = 0\n)\ndef Camera \"c\" {}\n", "0 time codes", ADCGS_ERR_DATA},
@@ -294,8 +296,8 @@ static void test_damaged(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_angles),        cmocka_unit_test(test_chan_again), cmocka_unit_test(test_chan_by_hand),
-        cmocka_unit_test(test_usd_again),     cmocka_unit_test(test_usd_of_others), cmocka_unit_test(test_bad),
+        cmocka_unit_test(test_angles),    cmocka_unit_test(test_chan_again),    cmocka_unit_test(test_chan_by_hand),
+        cmocka_unit_test(test_usd_again), cmocka_unit_test(test_usd_of_others), cmocka_unit_test(test_bad),
         cmocka_unit_test(test_damaged),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -15,8 +15,13 @@
 /** A stream of 10 frames from second 2 on. Its scene has a scale of 3 units about (1, 2, 3). */
 static adcgs_info make_info(const char *axes)
 {
-    adcgs_info info = {.time_start = 2.0, .time_end = 2.9, .frame_rate = 10.0, .scene_origin = {1.0, 2.0, 3.0},
-                       .scene_scale = 3.0, .layers = 5, .cameras = 2};
+    adcgs_info info = {.time_start = 2.0,
+                       .time_end = 2.9,
+                       .frame_rate = 10.0,
+                       .scene_origin = {1.0, 2.0, 3.0},
+                       .scene_scale = 3.0,
+                       .layers = 5,
+                       .cameras = 2};
     snprintf(info.axes, sizeof info.axes, "%s", axes);
     return info;
 }
@@ -24,8 +29,15 @@ static adcgs_info make_info(const char *axes)
 /** A camera at a distance of 6 from the centre, looking at it along +y, z up. */
 static adcgs_camera make_camera(void)
 {
-    return (adcgs_camera){.width = 640, .height = 480, .fx = 500.0, .fy = 510.0, .cx = 300.0, .cy = 250.0, .near_plane = 0.03,
-                          .cam_to_world = {1, 0, 0, 1.0, 0, 0, 1, -4.0, 0, -1, 0, 3.0}, .name = "first"};
+    return (adcgs_camera){.width = 640,
+                          .height = 480,
+                          .fx = 500.0,
+                          .fy = 510.0,
+                          .cx = 300.0,
+                          .cy = 250.0,
+                          .near_plane = 0.03,
+                          .cam_to_world = {1, 0, 0, 1.0, 0, 0, 1, -4.0, 0, -1, 0, 3.0},
+                          .name = "first"};
 }
 
 static adcgs_orbit_control make_rig(const char *axes)
@@ -298,8 +310,8 @@ static void test_scale(void **state)
     adcgs_play_scale_took(&scale, 0.2, 1.0 / 30.0);              /* one slow image changes nothing */
     assert_int_equal(play_pictures(&scale, 0.0, 0.030, 100), 0);
     play_pictures(&scale, 0.0, 0.2, 100);
-    assert_int_equal(scale.divider, 3);                          /* 22 ms; 50 at 1/2 */
-    assert_int_equal(play_pictures(&scale, 0.0, 0.2, 1000), 0);  /* and stays */
+    assert_int_equal(scale.divider, 3);                         /* 22 ms; 50 at 1/2 */
+    assert_int_equal(play_pictures(&scale, 0.0, 0.2, 1000), 0); /* and stays */
     play_pictures(&scale, 0.0, 0.01, 100);
     assert_int_equal(scale.divider, 1);
     play_pictures(&scale, 0.05, 1.0, 100); /* nothing helps: the coarsest, not beyond */
@@ -519,7 +531,15 @@ static uint32_t pixel(const adcgs_panel *panel, int x, int y)
 
 static void test_letters(void **state)
 {
-    static const char picture[] = "..#..." ".#.#.." "#...#." "#...#." "#####." "#...#." "#...#." "......" "......";
+    static const char picture[] = "..#..."
+                                  ".#.#.."
+                                  "#...#."
+                                  "#...#."
+                                  "#####."
+                                  "#...#."
+                                  "#...#."
+                                  "......"
+                                  "......";
     adcgs_panel panel = {0};
     adcgs_panel_init(&panel, 60, 40, 0x01020304);
     adcgs_panel_text(&panel, 3, 5, 2, "\nA", 0xa0b0c0d0);
@@ -566,7 +586,7 @@ static void test_overlay(void **state)
     adcgs_play_resize(&play, 640, 480, 1.0);
     adcgs_play_tick(&play, 60.0);
     adcgs_overlay_draw(panels, &play, &figures);
-    assert_int_equal(panels[2].width, 0); /* the message is gone */
+    assert_int_equal(panels[2].width, 0);    /* the message is gone */
     for (int i = 0; i < ADCGS_PANELS; i++) { /* at this size everything is visible */
         assert_true(panels[i].x + panels[i].width <= 640 && panels[i].y + panels[i].height <= 480);
         adcgs_panel_free(&panels[i]);
@@ -589,7 +609,8 @@ static void test_script(void **state)
     adcgs_script script;
     assert_int_equal(read_script(&script, "\xef\xbb\xbf# a word\n\n wait 10 frames\r\nwait 0.5 seconds\n"
                                           "drag shift-left 1 2 3.5 -4\nkey shift-p\nkey f1\n"
-                                          "size 640x480\nexpect time 0.5 1e-3\nexpect size 64x65\nquit"), ADCGS_OK);
+                                          "size 640x480\nexpect time 0.5 1e-3\nexpect size 64x65\nquit"),
+                     ADCGS_OK);
     assert_int_equal(script.n, 9);
     const adcgs_script_line *const l = script.lines;
     assert_true(l[0].line == 3 && l[0].kind == ADCGS_SCRIPT_WAIT_FRAMES && l[0].number[0] == 10.0);
@@ -609,11 +630,32 @@ static void test_script(void **state)
 
 static void test_bad_scripts(void **state)
 {
-    static const char *const bad[] = {"jump", "wait", "wait 3", "wait end 3", "wait 3 end", "wait -1 frames", "wait x frames",
-                                      "drag left 1 2 3", "key",
-                                      "drag nose 1 2 3 4", "key enter2", "key shift-", "size 10x10", "size 640", "size 640x480x3",
-                                      "size 1e5x70", "screenshot", "grab a b", "expect", "expect time", "expect time 1 2 3",
-                                      "expect size 3", "quit now", "wheel nan", "wheel 1e300", "move 1"};
+    static const char *const bad[] = {"jump",
+                                      "wait",
+                                      "wait 3",
+                                      "wait end 3",
+                                      "wait 3 end",
+                                      "wait -1 frames",
+                                      "wait x frames",
+                                      "drag left 1 2 3",
+                                      "key",
+                                      "drag nose 1 2 3 4",
+                                      "key enter2",
+                                      "key shift-",
+                                      "size 10x10",
+                                      "size 640",
+                                      "size 640x480x3",
+                                      "size 1e5x70",
+                                      "screenshot",
+                                      "grab a b",
+                                      "expect",
+                                      "expect time",
+                                      "expect time 1 2 3",
+                                      "expect size 3",
+                                      "quit now",
+                                      "wheel nan",
+                                      "wheel 1e300",
+                                      "move 1"};
     for (size_t i = 0; i < ADCGS_COUNTOF(bad); i++) {
         adcgs_script script;
         char text[100];
@@ -630,14 +672,17 @@ static void test_bad_scripts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_orbit), cmocka_unit_test(test_orbit_follows_mouse), cmocka_unit_test(test_up),
-        cmocka_unit_test(test_pan_and_zoom), cmocka_unit_test(test_fly), cmocka_unit_test(test_view),
-        cmocka_unit_test(test_clock), cmocka_unit_test(test_clock_waits), cmocka_unit_test(test_clock_speed),
-        cmocka_unit_test(test_clock_steps),
-        cmocka_unit_test(test_scale), cmocka_unit_test(test_scale_settles), cmocka_unit_test(test_scale_tiers),
-        cmocka_unit_test(test_keys), cmocka_unit_test(test_quit),
-        cmocka_unit_test(test_repeats), cmocka_unit_test(test_mouse), cmocka_unit_test(test_scrub), cmocka_unit_test(test_flight),
-        cmocka_unit_test(test_letters), cmocka_unit_test(test_overlay), cmocka_unit_test(test_script),
+        cmocka_unit_test(test_orbit),       cmocka_unit_test(test_orbit_follows_mouse),
+        cmocka_unit_test(test_up),          cmocka_unit_test(test_pan_and_zoom),
+        cmocka_unit_test(test_fly),         cmocka_unit_test(test_view),
+        cmocka_unit_test(test_clock),       cmocka_unit_test(test_clock_waits),
+        cmocka_unit_test(test_clock_speed), cmocka_unit_test(test_clock_steps),
+        cmocka_unit_test(test_scale),       cmocka_unit_test(test_scale_settles),
+        cmocka_unit_test(test_scale_tiers), cmocka_unit_test(test_keys),
+        cmocka_unit_test(test_quit),        cmocka_unit_test(test_repeats),
+        cmocka_unit_test(test_mouse),       cmocka_unit_test(test_scrub),
+        cmocka_unit_test(test_flight),      cmocka_unit_test(test_letters),
+        cmocka_unit_test(test_overlay),     cmocka_unit_test(test_script),
         cmocka_unit_test(test_bad_scripts),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -33,13 +33,15 @@ static void test_variants(void **state)
     static const float p[3] = {1.0f, -2.0f, 0.5f};
     static const uint8_t grey[3] = {128, 128, 128}, orange[3] = {255, 128, 0};
     expect_points(TEXT("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
-                       "end_header\n7 7 7\n1 -2 .5\n"), 2, p, grey);
+                       "end_header\n7 7 7\n1 -2 .5\n"),
+                  2, p, grey);
     /* Carriage returns, comments, other order, other elements on both sides, lists, no newline at the end. */
     expect_points(TEXT("ply\r\nformat ascii 1.0\r\ncomment x\r\nobj_info y\r\nelement camera 2\r\nproperty list uchar int id\r\n"
                        "property float f\r\nelement vertex 1\r\nproperty uchar blue\r\nproperty float z\r\nproperty uchar red\r\n"
                        "property list int float w\r\nproperty double x\r\nproperty uchar green\r\nproperty float y\r\n"
                        "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n"
-                       "3 1 2 3 0.5\r\n0 0.5\r\n0 0.5 255 2 9 9 1 128 -2\r\n1 0"), 1, p, orange);
+                       "3 1 2 3 0.5\r\n0 0.5\r\n0 0.5 255 2 9 9 1 128 -2\r\n1 0"),
+                  1, p, orange);
     /* Float colours. */
     expect_points(TEXT("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                        "property float red\nproperty float green\nproperty float blue\nend_header\n1 -2 0.5 3 0.5 -1\n"),
@@ -47,10 +49,12 @@ static void test_variants(void **state)
     /* Binary, both byte orders. */
     expect_points(TEXT("ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                        "property float z\nproperty ushort red\nproperty uint8 green\nproperty char blue\nend_header\n"
-                       "\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f\xff\xff\x80\x80"), 1, p, orange);
+                       "\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f\xff\xff\x80\x80"),
+                  1, p, orange);
     expect_points(TEXT("ply\nformat binary_big_endian 1.0\nelement tag 1\nproperty list ushort short v\nelement vertex 1\n"
                        "property float x\nproperty short y\nproperty double z\nend_header\n"
-                       "\0\2\1\1\1\1\x3f\x80\0\0\xff\xfe\x3f\xe0\0\0\0\0\0\0"), 1, p, grey);
+                       "\0\2\1\1\1\1\x3f\x80\0\0\xff\xfe\x3f\xe0\0\0\0\0\0\0"),
+                  1, p, grey);
 }
 
 static void expect_bad(const char *text, size_t bytes, const char *what)
@@ -87,7 +91,8 @@ static void test_damage(void **state)
     expect_bad(TEXT("ply\nformat binary_little_endian 1.0\nelement vertex 2" XYZ "end_header\n0123456789012345678"),
                "bytes follow");
     expect_bad(TEXT("ply\nformat binary_little_endian 1.0\nelement a 1\nproperty list uint double v\nelement vertex 1" XYZ
-                    "end_header\n\xff\xff\xff\xff 01234567890123456789"), "ends in item 0");
+                    "end_header\n\xff\xff\xff\xff 01234567890123456789"),
+               "ends in item 0");
     expect_bad(TEXT("DRACO\2\2"), "Draco");
     expect_bad(TEXT("DRACO\2\2\1\1\0\0\xff\xff\xff\x7f\xff\xff\xff\x7f 0123456789"), "Draco");
     adcgs_points points;
@@ -99,13 +104,19 @@ static void test_npy(void **state)
 {
     static const float p[3] = {1.0f, -2.0f, 0.5f};
     static const uint8_t grey[3] = {128, 128, 128};
-    expect_points(TEXT("\x93NUMPY\1\0\x3c\0" "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n"
-                       "............\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f"), 2, p, grey);
+    expect_points(TEXT("\x93NUMPY\1\0\x3c\0"
+                       "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n"
+                       "............\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f"),
+                  2, p, grey);
     /* Another order, other quotes, no comma at the end, blanks; formats 2.0 and 3.0 give the header's length in four bytes. */
-    expect_points(TEXT("\x93NUMPY\2\0\x38\0\0\0" "{\"shape\":(1,3,),\"descr\":\"<f8\",\"fortran_order\":False}   \n"
-                       "\0\0\0\0\0\0\xf0\x3f\0\0\0\0\0\0\0\xc0\0\0\0\0\0\0\xe0\x3f"), 1, p, grey);
-    expect_points(TEXT("\x93NUMPY\3\0\x3b\0\0\0" "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }"
-                       "\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f"), 1, p, grey);
+    expect_points(TEXT("\x93NUMPY\2\0\x38\0\0\0"
+                       "{\"shape\":(1,3,),\"descr\":\"<f8\",\"fortran_order\":False}   \n"
+                       "\0\0\0\0\0\0\xf0\x3f\0\0\0\0\0\0\0\xc0\0\0\0\0\0\0\xe0\x3f"),
+                  1, p, grey);
+    expect_points(TEXT("\x93NUMPY\3\0\x3b\0\0\0"
+                       "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }"
+                       "\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f"),
+                  1, p, grey);
 }
 
 static void expect_bad_header(const char *header, size_t bytes, const char *what)
@@ -154,12 +165,18 @@ static void test_bad_npy(void **state)
     expect_bad_header(TEXT("{" F4 ", " C_ORDER ", 'shape': (0, 3)}, {"), "follows the dictionary");
     expect_bad_header(TEXT("{" F4 ", " C_ORDER ", 'shape': (1, 3)}"), "0 bytes behind the header, expected 12");
     expect_bad_header(TEXT("{" F4 ", " C_ORDER ", 'shape': (100000000000, 3)}"), "expected 1200000000000");
-    expect_bad(TEXT("\x93NUMPY\1\0\x3b\0" "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }"
-                       "0123456789012"), "13 bytes");
-    expect_bad(TEXT("\x93NUMPY\1\0\x3b\0" "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }"
-                       "........\0\0\x80\x7f"), "not a finite");
-    expect_bad(TEXT("\x93NUMPY\1\0\x3b\0" "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 3), }"
-                       "................\0\0\0\0\0\0\xf0\x7e"), "not a finite");
+    expect_bad(TEXT("\x93NUMPY\1\0\x3b\0"
+                    "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }"
+                    "0123456789012"),
+               "13 bytes");
+    expect_bad(TEXT("\x93NUMPY\1\0\x3b\0"
+                    "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }"
+                    "........\0\0\x80\x7f"),
+               "not a finite");
+    expect_bad(TEXT("\x93NUMPY\1\0\x3b\0"
+                    "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 3), }"
+                    "................\0\0\0\0\0\0\xf0\x7e"),
+               "not a finite");
 }
 
 static void test_too_many_properties(void **state)
@@ -231,14 +248,18 @@ static void test_others(void **state)
     static const char *const types[] = {"float", "double", "short", "ushort", "int", "uint"};
     char text[1000];
     for (size_t i = 0; i < ADCGS_COUNTOF(types); i++) {
-        snprintf(text, sizeof text, HEAD "2" XYZ "property %s red\nproperty %s green\nproperty %s blue\nend_header\n7 7 7 9 9 9\n"
-                 "1 -2 .5 255 128 0\n", types[i], types[i], types[i]);
+        snprintf(text, sizeof text,
+                 HEAD "2" XYZ "property %s red\nproperty %s green\nproperty %s blue\nend_header\n7 7 7 9 9 9\n"
+                      "1 -2 .5 255 128 0\n",
+                 types[i], types[i], types[i]);
         expect_points(text, strlen(text), 2, p, orange);
     }
     expect_points(TEXT(HEAD "1" XYZ "property uchar diffuse_red\nproperty uchar diffuse_green\nproperty uchar diffuse_blue\n"
-                       "end_header\n1 -2 .5 255 128 0\n"), 1, p, orange);
+                            "end_header\n1 -2 .5 255 128 0\n"),
+                  1, p, orange);
     expect_points(TEXT(HEAD "1" XYZ "property float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\n"
-                       "end_header\n1 -2 .5 1.8 0.007 -1.9\n"), 1, p, orange);
+                            "end_header\n1 -2 .5 1.8 0.007 -1.9\n"),
+                  1, p, orange);
     expect_points(TEXT("ply\nformat ascii 1.0\ncomment offset 1000000.5 -2 0\nelement vertex 1" XYZ "end_header\n-999999.5 0 .5"),
                   1, p, (const uint8_t[3]){128, 128, 128});
 }
@@ -247,7 +268,10 @@ static void test_others(void **state)
 static void test_mutations(void **state)
 {
     static const char good[] = "ply\nformat binary_little_endian 1.0\nelement a 2\nproperty list uchar int v\n"
-                               "element vertex 3" XYZ "end_header\n\1\0\0\0\0\0" "012345678901" "012345678901" "012345678901";
+                               "element vertex 3" XYZ "end_header\n\1\0\0\0\0\0"
+                               "012345678901"
+                               "012345678901"
+                               "012345678901";
     char bytes[sizeof good];
     adcgs_points points;
     for (size_t i = 0; i < sizeof good - 1; i++)
@@ -263,12 +287,12 @@ static void test_mutations(void **state)
 static void test_draco(void **state)
 {
     static const uint8_t file[] = {
-        0x44, 0x52, 0x41, 0x43, 0x4f, 0x02, 0x03, 0x00, 0x00, 0x00, 0x00, 0x04, 0x00, 0x00, 0x00, 0x01, 0x02, 0x00, 0x09, 0x03,
-        0x00, 0x00, 0x02, 0x02, 0x03, 0x00, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x80, 0x00, 0x00, 0x00,
-        0x3f, 0x00, 0x00, 0x80, 0x3f, 0x00, 0x00, 0x00, 0xc0, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x00, 0x00, 0x40, 0x00, 0x00, 0x80,
-        0xc0, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x00, 0x40, 0x40, 0x00, 0x00, 0xc0, 0xc0, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x01, 0x01,
-        0x01, 0x02, 0x70, 0x55, 0x15, 0x59, 0x15, 0x47, 0x01, 0x10, 0xff, 0x67, 0x55, 0x05, 0x05, 0x96, 0xc2, 0x7f, 0xc4, 0x90,
-        0x00, 0x00, 0x00, 0x00, 0xff, 0x00, 0x00, 0x00,
+        0x44, 0x52, 0x41, 0x43, 0x4f, 0x02, 0x03, 0x00, 0x00, 0x00, 0x00, 0x04, 0x00, 0x00, 0x00, 0x01, 0x02, 0x00,
+        0x09, 0x03, 0x00, 0x00, 0x02, 0x02, 0x03, 0x00, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+        0x80, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x00, 0x80, 0x3f, 0x00, 0x00, 0x00, 0xc0, 0x00, 0x00, 0x00, 0x3f, 0x00,
+        0x00, 0x00, 0x40, 0x00, 0x00, 0x80, 0xc0, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x00, 0x40, 0x40, 0x00, 0x00, 0xc0,
+        0xc0, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x01, 0x01, 0x01, 0x02, 0x70, 0x55, 0x15, 0x59, 0x15, 0x47, 0x01, 0x10,
+        0xff, 0x67, 0x55, 0x05, 0x05, 0x96, 0xc2, 0x7f, 0xc4, 0x90, 0x00, 0x00, 0x00, 0x00, 0xff, 0x00, 0x00, 0x00,
     };
     adcgs_points points;
     assert_int_equal(adcgs_draco_parse(&points, file, sizeof file, "d.drc", &error), ADCGS_OK);
@@ -380,10 +404,10 @@ static void test_real_files(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_variants),   cmocka_unit_test(test_damage),    cmocka_unit_test(test_too_many_properties),
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_mutations), cmocka_unit_test(test_draco),
-        cmocka_unit_test(test_real_files), cmocka_unit_test(test_npy),       cmocka_unit_test(test_bad_npy),
-        cmocka_unit_test(test_draco_writing), cmocka_unit_test(test_far),         cmocka_unit_test(test_others),
+        cmocka_unit_test(test_variants),      cmocka_unit_test(test_damage),    cmocka_unit_test(test_too_many_properties),
+        cmocka_unit_test(test_round_trip),    cmocka_unit_test(test_mutations), cmocka_unit_test(test_draco),
+        cmocka_unit_test(test_real_files),    cmocka_unit_test(test_npy),       cmocka_unit_test(test_bad_npy),
+        cmocka_unit_test(test_draco_writing), cmocka_unit_test(test_far),       cmocka_unit_test(test_others),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

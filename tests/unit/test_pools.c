@@ -25,13 +25,13 @@ static adcgs_decoder *open_in(const fixture *f, adcgs_pool *pool)
 static int draws_reference(adcgs_decoder *d)
 {
     float rgb[3 * FIXTURE_WIDTH * FIXTURE_HEIGHT];
-    adcgs_frame frame = { FIXTURE_WIDTH, FIXTURE_HEIGHT, rgb };
+    adcgs_frame frame = {FIXTURE_WIDTH, FIXTURE_HEIGHT, rgb};
     return adcgs_render(d, &fixture_camera, 0.045, &frame, NULL) == ADCGS_OK && memcmp(rgb, reference, sizeof rgb) == 0;
 }
 
 static int setup_reference(void **state)
 {
-    adcgs_frame frame = { FIXTURE_WIDTH, FIXTURE_HEIGHT, reference };
+    adcgs_frame frame = {FIXTURE_WIDTH, FIXTURE_HEIGHT, reference};
     if (setup(state))
         return -1;
     adcgs_decoder *d = open_in(*state, NULL);
@@ -56,7 +56,7 @@ static void *use(void *arg)
 static void test_shared_pool(void **state)
 {
     adcgs_pool *pool;
-    user users[3] = { { 0 } };
+    user users[3] = {{0}};
     pthread_t threads[3];
     assert_int_equal(adcgs_pool_create(&pool, 3, NULL), ADCGS_OK);
     for (int i = 0; i < 3; i++)
@@ -114,7 +114,7 @@ static void run_on_threads(void *arg, adcgs_task_fn task, void *work, int n)
     l->calls++;
     l->most = ADCGS_MAX(l->most, n);
     for (int i = 0; i < n; i++) {
-        threads[i] = (lent_thread){ task, work, i, l->mode, 0 };
+        threads[i] = (lent_thread){task, work, i, l->mode, 0};
         if (pthread_create(&ids[i], NULL, lent_main, &threads[i]))
             abort();
     }
@@ -138,8 +138,8 @@ static void lend(const fixture *f, adcgs_run_fn run, lender *l)
 
 static void test_lent_threads(void **state)
 {
-    lender one_by_one = { .threads = 5 };
-    lender plain = { .threads = 3, .mode = FE_TONEAREST }, upward = { .threads = TASKS_MOST, .mode = FE_UPWARD };
+    lender one_by_one = {.threads = 5};
+    lender plain = {.threads = 3, .mode = FE_TONEAREST}, upward = {.threads = TASKS_MOST, .mode = FE_UPWARD};
     lend(*state, run_backwards, &one_by_one);
     lend(*state, run_on_threads, &plain);
     lend(*state, run_on_threads, &upward);

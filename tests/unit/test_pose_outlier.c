@@ -26,7 +26,7 @@ static adcgs_error error;
 static void set_view(adcgs_stereo_view *v, int i)
 {
     const double a = 2.0 * M_PI * (i - 0.5 * (CAMERAS - 1)) / (3 * CAMERAS), tilt = i % 2 ? 0.15 : -0.1;
-    const double z[3] = { -cos(a) * cos(tilt), -sin(a) * cos(tilt), -sin(tilt) }, right[3] = { -sin(a), cos(a), 0.0 };
+    const double z[3] = {-cos(a) * cos(tilt), -sin(a) * cos(tilt), -sin(tilt)}, right[3] = {-sin(a), cos(a), 0.0};
     adcgs_v3_cross(z, right, v->rotation + 3);
     for (int k = 0; k < 3; k++) {
         v->rotation[k] = right[k];
@@ -43,7 +43,7 @@ static void render_ball(adcgs_stereo_camera *c, adcgs_depths *d)
 {
     const adcgs_stereo_view *const v = &c->view;
     for (int i = 0; i < PIXELS; i++) {
-        const double p[3] = { (i % SIDE + 0.5 - v->cx) / v->fx, (i / SIDE + 0.5 - v->cy) / v->fy, 1.0 };
+        const double p[3] = {(i % SIDE + 0.5 - v->cx) / v->fx, (i / SIDE + 0.5 - v->cy) / v->fy, 1.0};
         double w[3], x[3];
         for (int a = 0; a < 3; a++)
             w[a] = v->rotation[a] * p[0] + v->rotation[3 + a] * p[1] + v->rotation[6 + a] * p[2];
@@ -64,7 +64,7 @@ static int make_rig(void **state)
         adcgs_stereo_camera *const c = &rig.camera[i];
         c->background = adcgs_alloc(NULL, 4 * PIXELS, sizeof *c->background, &error);
         c->unstable = adcgs_alloc(NULL, PIXELS, 1, &error);
-        depths[i] = (adcgs_depths){ .view = &c->view, .w = SIDE, .h = SIDE, .step = 0.001 };
+        depths[i] = (adcgs_depths){.view = &c->view, .w = SIDE, .h = SIDE, .step = 0.001};
         depths[i].inverse = adcgs_alloc(NULL, PIXELS, sizeof *depths[i].inverse, &error);
         depths[i].quality = adcgs_alloc(NULL, PIXELS, 1, &error);
         if (!c->background || !c->unstable || !depths[i].inverse || !depths[i].quality)
@@ -111,7 +111,7 @@ static void exchange(int i, int k)
 /** Runs the check and restores all cameras. */
 static adcgs_stereo ask(void)
 {
-    adcgs_stereo out = { .n_outliers = 0 };
+    adcgs_stereo out = {.n_outliers = 0};
     assert_int_equal(adcgs_stereo_find_pose_outliers(&out, &rig, depths, NULL, &error), ADCGS_OK);
     for (int i = 0; i < CAMERAS; i++)
         set_view(&rig.camera[i].view, i);
@@ -134,7 +134,7 @@ static void expect_one(double pixels, double degrees, double share)
 
 static void test_one(void **state)
 {
-    static const double degrees[] = { 1.0, 4.0, 20.0 };
+    static const double degrees[] = {1.0, 4.0, 20.0};
     const double focal = rig.camera[ODD].view.fx;
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(degrees); i++) {

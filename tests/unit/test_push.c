@@ -25,8 +25,14 @@ static int setup(void **state)
     adcgs_random_small_params(&params, 2, &seed);
     s->cameras = adcgs_alloc(NULL, 1, sizeof *s->cameras, NULL);
     s->n_cameras = 1;
-    s->cameras[0] = (adcgs_camera){ .width = 8, .height = 8, .fx = 8, .fy = 8, .cx = 4, .cy = 4, .near_plane = 0.1,
-                                    .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3 } };
+    s->cameras[0] = (adcgs_camera){.width = 8,
+                                   .height = 8,
+                                   .fx = 8,
+                                   .fy = 8,
+                                   .cx = 4,
+                                   .cy = 4,
+                                   .near_plane = 0.1,
+                                   .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3}};
     return fixture_turns(f, &params, SEGMENTS, 80, 4, 70, &seed);
 }
 
@@ -129,7 +135,7 @@ static void test_arrivals(void **state)
     adcgs_decoder *d = open_push();
     const uint8_t *data = f->bytes.data;
     size_t left = f->bytes.size, used;
-    int seen[5] = { 0 }, parts = 0, last = 0;
+    int seen[5] = {0}, parts = 0, last = 0;
     adcgs_camera camera;
     adcgs_info info;
     uint8_t digest[16];
@@ -155,7 +161,7 @@ static void test_arrivals(void **state)
     assert_int_equal(left, 0);
     assert_true(seen[ADCGS_ARRIVED_HEADER] == 1 && seen[ADCGS_ARRIVED_CAMERAS] == 1 && seen[ADCGS_ARRIVED_END] == 1);
     assert_in_range(seen[ADCGS_ARRIVED_SEGMENT], 2 * SEGMENTS, parts);
-    assert_int_equal(adcgs_push(d, data, 0, &used, &(adcgs_arrival){ 0 }, NULL), ADCGS_OK);
+    assert_int_equal(adcgs_push(d, data, 0, &used, &(adcgs_arrival){0}, NULL), ADCGS_OK);
     adcgs_close(&d);
 
     adcgs_decoder *other = NULL;
@@ -174,7 +180,7 @@ static void test_damage(void **state)
     for (int i = 0; i < 300; i++) {
         adcgs_buffer b;
         adcgs_decoder *d = open_push(), *in_order = NULL;
-        adcgs_error error = { ADCGS_OK, "" }, again = { ADCGS_OK, "" };
+        adcgs_error error = {ADCGS_OK, ""}, again = {ADCGS_OK, ""};
         uint8_t found[SEGMENTS][16], expected[16];
         size_t used;
         adcgs_arrival arrived;
@@ -246,7 +252,7 @@ static adcgs_status play_through(const fixture *f, uint64_t memory_limit, int fo
     uint32_t next = 0; /* segment to render */
     for (size_t at = 0, used = 0; at < f->bytes.size && status == ADCGS_OK; at += used) {
         adcgs_arrival arrived;
-        adcgs_info info = { .time_committed = -INFINITY };
+        adcgs_info info = {.time_committed = -INFINITY};
         status = adcgs_push(d, f->bytes.data + at, f->bytes.size - at, &used, &arrived, NULL);
         adcgs_get_info(d, &info, sizeof info, NULL);
         for (; status == ADCGS_OK && next < s->n_segments && s->segments[next].time_start < info.time_committed; next++) {
@@ -308,12 +314,8 @@ static void test_forget(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cut_anywhere),
-        cmocka_unit_test(test_every_prefix),
-        cmocka_unit_test(test_arrivals),
-        cmocka_unit_test(test_damage),
-        cmocka_unit_test(test_final),
-        cmocka_unit_test(test_forget),
+        cmocka_unit_test(test_cut_anywhere), cmocka_unit_test(test_every_prefix), cmocka_unit_test(test_arrivals),
+        cmocka_unit_test(test_damage),       cmocka_unit_test(test_final),        cmocka_unit_test(test_forget),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -57,11 +57,11 @@ typedef struct function {
     const char *name;
     float (*computed)(float x);
     double (*exact)(double x);
-    float low, high;     /* its domain, or the part that is not clamped first */
-    double places;       /* largest error, in places of the exact result's last digit; 0: not specified */
-    double error;        /* largest error, relative or absolute as below */
+    float low, high; /* its domain, or the part that is not clamped first */
+    double places;   /* largest error, in places of the exact result's last digit; 0: not specified */
+    double error;    /* largest error, relative or absolute as below */
     int relative;
-    int falls;           /* largest fall, in places, while the argument grows; -1: not specified */
+    int falls; /* largest fall, in places, while the argument grows; -1: not specified */
 } function;
 
 /* The errors are those of annex "Accuracy", found with every number of these ranges. */

@@ -341,9 +341,9 @@ static void test_cameras(void **state)
     assert_true(view.translation[2] == 1.6f && view.near_plane == (float)(0.05 / 2.0));
     assert_int_equal(adcgs_view_init(&view, &good, origin, 0.0, NULL), ADCGS_ERR_USAGE);
     assert_int_equal(adcgs_view_init(&view, &good, origin, nan, NULL), ADCGS_ERR_USAGE);
-#define REFUSED(change)                                                               \
-    bad = good;                                                                       \
-    change;                                                                           \
+#define REFUSED(change) \
+    bad = good;         \
+    change;             \
     assert_int_equal(adcgs_view_init(&view, &bad, origin, 1.0, NULL), ADCGS_ERR_USAGE)
     REFUSED(bad.width = 0);
     REFUSED(bad.height = 16385);
@@ -376,11 +376,10 @@ static void test_sort(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_everywhere), cmocka_unit_test(test_sizes),       cmocka_unit_test(test_wild_splats),
-        cmocka_unit_test(test_hostile_splats),  cmocka_unit_test(test_nothing_to_draw),
-        cmocka_unit_test(test_not_numbers),     cmocka_unit_test(test_zero_has_no_sign),
-        cmocka_unit_test(test_reference),       cmocka_unit_test(test_limits),      cmocka_unit_test(test_steady_memory),
-        cmocka_unit_test(test_cameras),         cmocka_unit_test(test_sort),
+        cmocka_unit_test(test_same_everywhere),  cmocka_unit_test(test_sizes),           cmocka_unit_test(test_wild_splats),
+        cmocka_unit_test(test_hostile_splats),   cmocka_unit_test(test_nothing_to_draw), cmocka_unit_test(test_not_numbers),
+        cmocka_unit_test(test_zero_has_no_sign), cmocka_unit_test(test_reference),       cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_steady_memory),    cmocka_unit_test(test_cameras),         cmocka_unit_test(test_sort),
     };
     return cmocka_run_group_tests_name("raster", tests, NULL, NULL);
 }

@@ -296,12 +296,8 @@ static void test_distortion(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_without_screen),
-        cmocka_unit_test(test_gradients),
-        cmocka_unit_test(test_gradients_limited),
-        cmocka_unit_test(test_weight),
-        cmocka_unit_test(test_distortion),
-        cmocka_unit_test(test_same_everywhere),
+        cmocka_unit_test(test_without_screen), cmocka_unit_test(test_gradients),  cmocka_unit_test(test_gradients_limited),
+        cmocka_unit_test(test_weight),         cmocka_unit_test(test_distortion), cmocka_unit_test(test_same_everywhere),
     };
     return cmocka_run_group_tests_name("raster_back", tests, NULL, NULL);
 }

@@ -41,17 +41,35 @@ static void set_rounding(adcgs_fmodel *f)
 /** A random model whose entropy networks have `hidden` layers and weights about `size`. */
 static void make(fixture *x, adcgs_cpu_level cpu, int hidden, double size, int adaptive)
 {
-    const adcgs_params params = { .k = 3, .n_fv = 9, .n_fg = 8, .chunks = 4, .n_eta = 3, .octaves = 2,
-                                  .adaptive_steps = (uint8_t)adaptive, .time_rows = 3, .time_width = 2 };
-    const adcgs_shape shape = { .theta_width = 6, .theta_hidden = 2, .omega_width = 5, .omega_hidden = 1, .varpi_width = 5,
-                                .varpi_hidden = 1, .entropy_width = 11, .entropy_hidden = hidden, .step_fv = 0.1f,
-                                .step_fg = 0.07f, .step_sigma = 0.03f, .step_colour = 0.05f, .depth = 8 };
-    const float origin[3] = { -1, -1, -1 };
+    const adcgs_params params = {.k = 3,
+                                 .n_fv = 9,
+                                 .n_fg = 8,
+                                 .chunks = 4,
+                                 .n_eta = 3,
+                                 .octaves = 2,
+                                 .adaptive_steps = (uint8_t)adaptive,
+                                 .time_rows = 3,
+                                 .time_width = 2};
+    const adcgs_shape shape = {.theta_width = 6,
+                               .theta_hidden = 2,
+                               .omega_width = 5,
+                               .omega_hidden = 1,
+                               .varpi_width = 5,
+                               .varpi_hidden = 1,
+                               .entropy_width = 11,
+                               .entropy_hidden = hidden,
+                               .step_fv = 0.1f,
+                               .step_fg = 0.07f,
+                               .step_sigma = 0.03f,
+                               .step_colour = 0.05f,
+                               .depth = 8};
+    const float origin[3] = {-1, -1, -1};
     static uint32_t pos[ANCHORS][3];
     for (uint32_t i = 0; i < ANCHORS; i++)
         pos[i][0] = i;
     assert_int_equal(adcgs_fmodel_create(&x->f, &params, &shape, origin, 1.0f / 128, (const uint32_t(*)[3])pos, ANCHORS, 3,
-                                         &error), ADCGS_OK);
+                                         &error),
+                     ADCGS_OK);
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         if (i != ADCGS_P_STEP)
             randomise(x->f->param[i].p, x->f->param[i].n, i < ADCGS_P_ANCHOR ? 0.7 : size, (uint64_t)i);
@@ -97,7 +115,7 @@ static void count_site(void *user, const adcgs_latent_site *s)
 static void count_bits(counter *c, adcgs_model *model)
 {
     adcgs_latents *latents;
-    *c = (counter){ .model = model };
+    *c = (counter){.model = model};
     assert_int_equal(adcgs_latents_create(&latents, model, ADCGS_CPU_SCALAR, NULL, &error), ADCGS_OK);
     for (int layer = 0; layer < model->layers; layer++)
         assert_int_equal(adcgs_latents_walk(latents, model, layer, 0, model->n, count_site, c, NULL), ADCGS_OK);
@@ -116,8 +134,11 @@ static int is_coded(const adcgs_fmodel *f, int group, size_t i)
 /** The twins' means and bits equal the coder's, for ordinary arithmetic and where all values are at their bounds. */
 static void twins_are_exact(void **state)
 {
-    static const struct { int hidden; double size; } cases[] = { { 1, 0.2 }, { 2, 0.2 }, { 3, 0.1 }, { 1, 3 }, { 2, 30 } };
-    int levels[ADCGS_SIGMA_LEVELS] = { 0 }, used = 0;
+    static const struct {
+        int hidden;
+        double size;
+    } cases[] = {{1, 0.2}, {2, 0.2}, {3, 0.1}, {1, 3}, {2, 30}};
+    int levels[ADCGS_SIGMA_LEVELS] = {0}, used = 0;
     for (size_t i = 0; i < 2 * ADCGS_COUNTOF(cases); i++) {
         fixture x;
         adcgs_model model;
@@ -129,7 +150,7 @@ static void twins_are_exact(void **state)
         float *factor = calloc(factors + 1, sizeof *factor);
         for (int g = 0; g < ADCGS_P_ANCHOR; g++)
             mu[g] = calloc(x.f->param[g].n, sizeof(float));
-        const adcgs_quantise_options options = { .cpu = ADCGS_CPU_SCALAR, .mu = mu, .factor = factor };
+        const adcgs_quantise_options options = {.cpu = ADCGS_CPU_SCALAR, .mu = mu, .factor = factor};
         assert_int_equal(adcgs_quantise(&model, x.f, &options, &error), ADCGS_OK);
         count_bits(&real, &model);
         adcgs_pass_rate(x.pass, x.f, &rate);
@@ -162,7 +183,7 @@ static void twins_are_exact(void **state)
  */
 static void rounded_values_are_the_coders(void **state)
 {
-    static const double sizes[] = { 0.2, 3, 30 };
+    static const double sizes[] = {0.2, 3, 30};
     for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++) {
         fixture x;
         adcgs_model model;
@@ -173,9 +194,9 @@ static void rounded_values_are_the_coders(void **state)
             x.f->step[ADCGS_P_FV][r] = 0.001f;
         for (int g = 0; g < ADCGS_P_ANCHOR; g++)
             value[g] = calloc(x.f->param[g].n, sizeof(float));
-        assert_int_equal(adcgs_quantise(&model, x.f, &(adcgs_quantise_options){ .value = value }, &error), ADCGS_OK);
+        assert_int_equal(adcgs_quantise(&model, x.f, &(adcgs_quantise_options){.value = value}, &error), ADCGS_OK);
         adcgs_pass_rate(x.pass, x.f, &rate);
-        adcgs_pass_forward(x.pass, x.f, 0.5f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_ROUND });
+        adcgs_pass_forward(x.pass, x.f, 0.5f, &(adcgs_pass_mode){.quant = ADCGS_QUANT_ROUND});
         for (int g = 0; g < ADCGS_P_ANCHOR; g++) {
             for (size_t j = 0; j < x.f->param[g].n; j++)
                 if (is_coded(x.f, g, j))
@@ -208,13 +229,13 @@ static void steps_reach_all_values(void **state)
 static void parts_add_up(void **state)
 {
     enum { PERIOD = 2 };
-    static const adcgs_quant modes[] = { ADCGS_QUANT_NONE, ADCGS_QUANT_ROUND };
+    static const adcgs_quant modes[] = {ADCGS_QUANT_NONE, ADCGS_QUANT_ROUND};
     fixture x;
     make(&x, (adcgs_cpu_level)(uintptr_t)*state, 1, 0.2, 1);
     for (size_t i = 0; i < ADCGS_COUNTOF(modes); i++) {
         adcgs_rate all, part;
-        double sum[ADCGS_GROUPS] = { 0 };
-        adcgs_pass_forward(x.pass, x.f, 0.5f, &(adcgs_pass_mode){ .quant = modes[i] });
+        double sum[ADCGS_GROUPS] = {0};
+        adcgs_pass_forward(x.pass, x.f, 0.5f, &(adcgs_pass_mode){.quant = modes[i]});
         adcgs_pass_backward(x.pass, x.f, 0, 1, 1, 0, &all);
         for (int first = 0; first < PERIOD; first++) {
             adcgs_pass_backward(x.pass, x.f, 0, 1, PERIOD, first, &part);
@@ -232,7 +253,7 @@ static void rate_gradients(fixture *x, adcgs_quant quant, float *g[ADCGS_P_COUNT
 {
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         memset(x->f->param[i].g, 0, x->f->param[i].n * sizeof(float));
-    adcgs_pass_forward(x->pass, x->f, 0.5f, &(adcgs_pass_mode){ .quant = quant });
+    adcgs_pass_forward(x->pass, x->f, 0.5f, &(adcgs_pass_mode){.quant = quant});
     memset(x->pass->grad, 0, 16 * (size_t)x->pass->primitives.n * sizeof(float));
     adcgs_pass_backward(x->pass, x->f, 0, 1, 1, 0, NULL);
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
@@ -288,7 +309,7 @@ static void shapes_fit_the_values(void **state)
             x.f->param[i].p[j] = (float)(2.78 * (peaked ? laplace : normal / sqrt(2))) * x.f->step[i][row];
         }
     adcgs_pass_densities(x.pass, x.f, &rate);
-    assert_int_equal(adcgs_quantise(&model, x.f, &(adcgs_quantise_options){ .cpu = ADCGS_CPU_SCALAR }, &error), ADCGS_OK);
+    assert_int_equal(adcgs_quantise(&model, x.f, &(adcgs_quantise_options){.cpu = ADCGS_CPU_SCALAR}, &error), ADCGS_OK);
     count_bits(&real, &model);
     for (int g = 0; g < ADCGS_GROUPS; g++) {
         assert_float_equal(rate.bits[g], real.bits[g], 1e-5 * real.bits[g]);
@@ -305,14 +326,14 @@ static void shapes_fit_the_values(void **state)
 /** Bits and derivatives of one value under the smooth rate. */
 static adcgs_rate_cell smooth(const adcgs_train_dsp *dsp, float n, int level)
 {
-    _Alignas(64) float y[64], mu[64] = { 0 }, si[64], weight[64] = { 1 }, dy[64] = { 0 }, dmu[64], dsi[64];
+    _Alignas(64) float y[64], mu[64] = {0}, si[64], weight[64] = {1}, dy[64] = {0}, dmu[64], dsi[64];
     const float step = 1;
     for (int l = 0; l < 64; l++) {
         y[l] = n;
         si[l] = ((float)level - ADCGS_SI_CENTRE) / ADCGS_SI_GAIN;
     }
-    const adcgs_rate_io io = { .n = 1, .y = y, .step = &step, .mu = mu, .si = si, .weight = weight, .scale = 1, .dy = dy,
-                               .dmu = dmu, .dsi = dsi };
+    const adcgs_rate_io io =
+        {.n = 1, .y = y, .step = &step, .mu = mu, .si = si, .weight = weight, .scale = 1, .dy = dy, .dmu = dmu, .dsi = dsi};
     adcgs_rate_cell cell;
     cell.bits = (float)dsp->rate(&io);
     cell.by_value = dy[0];

@@ -103,9 +103,10 @@ static void explain_pictures(adcgs_trainer *t)
     for (uint32_t i = 0; i < t->n_views; i++) {
         const adcgs_train_view *v = &t->views[i];
         const size_t n = 3 * (size_t)v->view.width * (size_t)v->view.height;
-        adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+        adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
         assert_int_equal(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, scene->background, 0.3f, t->image, 0,
-                                              &error), ADCGS_OK);
+                                              &error),
+                         ADCGS_OK);
         for (size_t j = 0; j < n; j++)
             t->taken[j] = t->image[j] + (float)(0.03 * adcgs_random_normal(9, i, j));
         assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
@@ -178,7 +179,7 @@ static void curvature_is_that_of_the_loss(void **state)
 
 static uint64_t stream_bytes(const adcgs_trainer *t, adcgs_model *model)
 {
-    const adcgs_encode_note note = { "key", "value" };
+    const adcgs_encode_note note = {"key", "value"};
     adcgs_stream stream;
     adcgs_buffer bytes;
     adcgs_buffer_init(&bytes);
@@ -197,8 +198,8 @@ static uint64_t stream_bytes(const adcgs_trainer *t, adcgs_model *model)
 static void strength_tells_bytes(void **state)
 {
     (void)state;
-    static const double strengths[] = { 0, 1, 10, 100, 1000, 10 };
-    const adcgs_encode_note note = { "key", "value" };
+    static const double strengths[] = {0, 1, 10, 100, 1000, 10};
+    const adcgs_encode_note note = {"key", "value"};
     adcgs_trainer *t = copy(1);
     uint64_t told[ADCGS_COUNTOF(strengths)], last = UINT64_MAX;
     adcgs_bytes bytes;
@@ -259,10 +260,8 @@ static void only_frozen_values_are_decided(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(levels_are_the_cheapest),
-        cmocka_unit_test(curvature_is_that_of_the_loss),
-        cmocka_unit_test(strength_tells_bytes),
-        cmocka_unit_test(decisions_are_kept),
+        cmocka_unit_test(levels_are_the_cheapest),        cmocka_unit_test(curvature_is_that_of_the_loss),
+        cmocka_unit_test(strength_tells_bytes),           cmocka_unit_test(decisions_are_kept),
         cmocka_unit_test(only_frozen_values_are_decided),
     };
     return cmocka_run_group_tests_name("rdo", tests, setup, teardown);

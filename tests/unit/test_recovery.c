@@ -17,7 +17,7 @@
 /** A step that destroys the scene at once is detected and rolled back, until steps are short enough. */
 static void lost_pictures_are_learnt_anew(void **state)
 {
-    static const char *const too_long[] = { "lr_scale_prediction=100", "lr_scale_motion=100", "lr_scale_prediction=10" };
+    static const char *const too_long[] = {"lr_scale_prediction=100", "lr_scale_motion=100", "lr_scale_prediction=10"};
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(too_long); i++) {
         adcgs_train_config config = small_config();
@@ -73,7 +73,7 @@ static void put_points(adcgs_scene *s, float at)
 /** Points in other units than the poses would become anchors that no image constrains. */
 static void points_that_no_camera_sees_are_refused(void **state)
 {
-    static const float places[] = { 0, 1000, -20, 1e30f };
+    static const float places[] = {0, 1000, -20, 1e30f};
     const adcgs_train_config config = small_config();
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(places); i++) {
@@ -115,7 +115,7 @@ static void contrast_is_of_what_is_known(void **state)
 /** A run can be finalised for the stream at any time, except before its first iteration and after it diverged. */
 static void a_run_ends_wherever_it_stands(void **state)
 {
-    static const uint32_t stops[] = { 60, 198 };
+    static const uint32_t stops[] = {60, 198};
     const adcgs_train_config config = small_config();
     adcgs_train_report report;
     adcgs_trainer *t = make_trainer(&config, pool);
@@ -156,24 +156,59 @@ static int spoil(adcgs_trainer *t, int way)
 {
     adcgs_fmodel *f = t->f;
     switch (way) {
-    case 0: t->curriculum.n = t->n_views + 1; break;
-    case 1: t->curriculum.last = f->params.time_rows; break;
-    case 2: t->curriculum.first = -1; break;
-    case 3: f->body[1] = (uint8_t)(f->params.bodies + 1); break;
-    case 4: f->tier[2] = (uint8_t)(f->finest + 1); break;
-    case 5: f->density[0] = 200; break;
-    case 6: f->growth[0] = 255; break;
-    case 7: f->pos[3][1] = 1U << f->shape.depth; break;
-    case 8: memcpy(f->pos[3], f->pos[2], sizeof f->pos[3]); break;
-    case 9: f->keep[5] = 0.5f; break;
-    case 10: f->moving[5] = NAN; break;
-    case 11: f->mlp[ADCGS_P_THETA].weight_step[0] = -1; break;
-    case 12: t->lr_scale = INFINITY; break;
-    case 13: t->lambda = NAN; break;
-    case 14: t->units_pruned = 3; break;
-    case 15: t->frozen = 1; break;
-    case 16: t->elapsed.clock = -1; break;
-    default: return 0;
+    case 0:
+        t->curriculum.n = t->n_views + 1;
+        break;
+    case 1:
+        t->curriculum.last = f->params.time_rows;
+        break;
+    case 2:
+        t->curriculum.first = -1;
+        break;
+    case 3:
+        f->body[1] = (uint8_t)(f->params.bodies + 1);
+        break;
+    case 4:
+        f->tier[2] = (uint8_t)(f->finest + 1);
+        break;
+    case 5:
+        f->density[0] = 200;
+        break;
+    case 6:
+        f->growth[0] = 255;
+        break;
+    case 7:
+        f->pos[3][1] = 1U << f->shape.depth;
+        break;
+    case 8:
+        memcpy(f->pos[3], f->pos[2], sizeof f->pos[3]);
+        break;
+    case 9:
+        f->keep[5] = 0.5f;
+        break;
+    case 10:
+        f->moving[5] = NAN;
+        break;
+    case 11:
+        f->mlp[ADCGS_P_THETA].weight_step[0] = -1;
+        break;
+    case 12:
+        t->lr_scale = INFINITY;
+        break;
+    case 13:
+        t->lambda = NAN;
+        break;
+    case 14:
+        t->units_pruned = 3;
+        break;
+    case 15:
+        t->frozen = 1;
+        break;
+    case 16:
+        t->elapsed.clock = -1;
+        break;
+    default:
+        return 0;
     }
     return 1;
 }
@@ -205,12 +240,9 @@ static void impossible_checkpoints_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lost_pictures_are_learnt_anew),
-        cmocka_unit_test(what_does_not_learn_stays),
-        cmocka_unit_test(points_that_no_camera_sees_are_refused),
-        cmocka_unit_test(contrast_is_of_what_is_known),
-        cmocka_unit_test(a_run_ends_wherever_it_stands),
-        cmocka_unit_test(impossible_checkpoints_are_refused),
+        cmocka_unit_test(lost_pictures_are_learnt_anew),          cmocka_unit_test(what_does_not_learn_stays),
+        cmocka_unit_test(points_that_no_camera_sees_are_refused), cmocka_unit_test(contrast_is_of_what_is_known),
+        cmocka_unit_test(a_run_ends_wherever_it_stands),          cmocka_unit_test(impossible_checkpoints_are_refused),
     };
     return cmocka_run_group_tests_name("recovery", tests, open_scene, close_scene);
 }

@@ -166,11 +166,8 @@ static void a_change_fails(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(loading_fails),
-        cmocka_unit_test(an_image_goes_away),
-        cmocka_unit_test(a_full_disk_changes_nothing),
-        cmocka_unit_test(writing_fails),
-        cmocka_unit_test(a_change_fails),
+        cmocka_unit_test(loading_fails), cmocka_unit_test(an_image_goes_away), cmocka_unit_test(a_full_disk_changes_nothing),
+        cmocka_unit_test(writing_fails), cmocka_unit_test(a_change_fails),
     };
     return cmocka_run_group_tests_name("rescue", tests, open_and_run, forget_and_close);
 }

@@ -23,7 +23,7 @@ static void expect(const fixture *f, adcgs_decoder *d, adcgs_alpha mode, uint8_t
 {
     float *rgb = calloc(3 * FIXTURE_PIXELS, sizeof *rgb), *alpha = calloc(FIXTURE_PIXELS, sizeof *alpha);
     assert_true(rgb && alpha);
-    adcgs_frame frame = { FIXTURE_WIDTH, FIXTURE_HEIGHT, rgb };
+    adcgs_frame frame = {FIXTURE_WIDTH, FIXTURE_HEIGHT, rgb};
     assert_int_equal(adcgs_render(d, &fixture_camera, TIME, &frame, NULL), ADCGS_OK);
     assert_int_equal(adcgs_render_depth(d, &fixture_camera, TIME, NULL, alpha, NULL), ADCGS_OK);
     int part = 0;
@@ -93,7 +93,7 @@ static void test_strides(void **state)
                 assert_int_equal(row[x], GUARD);
         }
     }
-    const ptrdiff_t wrong[] = { 0, ROW - 1, -ROW + 1 };
+    const ptrdiff_t wrong[] = {0, ROW - 1, -ROW + 1};
     for (size_t i = 0; i < ADCGS_COUNTOF(wrong); i++) {
         assert_int_equal(adcgs_render_rgba8(d, &fixture_camera, TIME, ADCGS_ALPHA_OPAQUE, plain, wrong[i], &error),
                          ADCGS_ERR_USAGE);

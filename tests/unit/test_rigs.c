@@ -244,8 +244,11 @@ static void test_kinds_of_cameras(void **state)
                 {"SIMPLE_RADIAL 24 16 20 12 8 0.05", 20, {0.05}, {0}, 0},
                 {"RADIAL 24 16 20 12 8 0.05 0.02", 20, {0.05, 0.02}, {0}, 0},
                 {"OPENCV 24 16 20 21 12 8 0.05 0.02 0.003 0.004", 21, {0.05, 0.02}, {0.003, 0.004}, 0},
-                {"FULL_OPENCV 24 16 20 21 12 8 0.05 0.02 0.003 0.004 0.01 0.011 0.012 0.013", 21,
-                 {0.05, 0.02, 0.01, 0.011, 0.012, 0.013}, {0.003, 0.004}, 0},
+                {"FULL_OPENCV 24 16 20 21 12 8 0.05 0.02 0.003 0.004 0.01 0.011 0.012 0.013",
+                 21,
+                 {0.05, 0.02, 0.01, 0.011, 0.012, 0.013},
+                 {0.003, 0.004},
+                 0},
                 {"OPENCV_FISHEYE 24 16 20 21 12 8 0.05 0.02 0.003 0.004", 21, {0.05, 0.02, 0.003, 0.004}, {0}, 1},
                 {"SIMPLE_RADIAL_FISHEYE 24 16 20 12 8 0.05", 20, {0.05}, {0}, 1},
                 {"RADIAL_FISHEYE 24 16 20 12 8 0.05 0.02", 20, {0.05, 0.02}, {0}, 1}};
@@ -442,8 +445,8 @@ static void test_fern(void **state)
     }
     adcgs_scene_free(&scene);
     const adcgs_scene_options colmap = {.dataset = ADCGS_DATASET_COLMAP};
-    expect_error(adcgs_scene_open(&scene, real_data("llff_fern"), &colmap, &error), ADCGS_ERR_DATA,
-                 "images.bin: no such file", "");
+    expect_error(adcgs_scene_open(&scene, real_data("llff_fern"), &colmap, &error), ADCGS_ERR_DATA, "images.bin: no such file",
+                 "");
 }
 
 static void test_robot(void **state)
@@ -507,12 +510,18 @@ static void test_hand(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_llff, clean),           cmocka_unit_test_teardown(test_llff_points, clean),
-        cmocka_unit_test_teardown(test_bad_poses, clean),      cmocka_unit_test_teardown(test_bad_files, clean),
-        cmocka_unit_test_teardown(test_neu3d, clean),          cmocka_unit_test_teardown(test_colmap, clean),
-        cmocka_unit_test_teardown(test_kinds_of_cameras, clean), cmocka_unit_test_teardown(test_bad_text, clean),
-        cmocka_unit_test_teardown(test_bad_binary, clean),     cmocka_unit_test_teardown(test_colmap_videos, clean),
-        cmocka_unit_test_teardown(test_fern, clean),           cmocka_unit_test_teardown(test_robot, clean),
+        cmocka_unit_test_teardown(test_llff, clean),
+        cmocka_unit_test_teardown(test_llff_points, clean),
+        cmocka_unit_test_teardown(test_bad_poses, clean),
+        cmocka_unit_test_teardown(test_bad_files, clean),
+        cmocka_unit_test_teardown(test_neu3d, clean),
+        cmocka_unit_test_teardown(test_colmap, clean),
+        cmocka_unit_test_teardown(test_kinds_of_cameras, clean),
+        cmocka_unit_test_teardown(test_bad_text, clean),
+        cmocka_unit_test_teardown(test_bad_binary, clean),
+        cmocka_unit_test_teardown(test_colmap_videos, clean),
+        cmocka_unit_test_teardown(test_fern, clean),
+        cmocka_unit_test_teardown(test_robot, clean),
         cmocka_unit_test_teardown(test_hand, clean),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

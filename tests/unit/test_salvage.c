@@ -49,8 +49,8 @@ static void count(void *user, adcgs_log_level level, const char *text)
 
 static adcgs_status salvage(adcgs_stream *out, adcgs_buffer *bytes, uint32_t *faults)
 {
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .log = { count, NULL } };
-    adcgs_error error = { ADCGS_OK, "" };
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR, .log = {count, NULL}};
+    adcgs_error error = {ADCGS_OK, ""};
     told = 0;
     const adcgs_status status = adcgs_stream_salvage(out, read_at, bytes, bytes->size, &options, faults, &error);
     assert_int_equal(told, *faults);
@@ -74,7 +74,7 @@ static uint32_t check_models(const fixture *f, const adcgs_stream *s, uint32_t *
 {
     *whole = 0;
     for (uint32_t i = 0; i < s->n_segments; i++) {
-        adcgs_error difference = { ADCGS_OK, "" };
+        adcgs_error difference = {ADCGS_OK, ""};
         const int number = number_of(f, &s->segments[i]);
         assert_true(number >= 0);
         if (s->segments[i].layers < adcgs_params_layers(&s->params) || s->segments[i].absent)
@@ -234,7 +234,7 @@ static void test_nested(void **state)
     adcgs_write_bytes(&b, f->bytes.data, chunk_at(&f->bytes, ADCGS_TYPE_SEGM, 0, &length));
     const size_t total = 1 << 20;
     while (b.size + 16 < total) {
-        uint8_t header[16] = { 'N', 'E', 'T', 'W' };
+        uint8_t header[16] = {'N', 'E', 'T', 'W'};
         adcgs_store_le32(header + 4, (uint32_t)(total - b.size - 16));
         adcgs_store_le32(header + 12, adcgs_crc32c(0, header, 12));
         adcgs_write_bytes(&b, header, sizeof header);
@@ -286,8 +286,8 @@ static void test_useful_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_whole), cmocka_unit_test(test_what_is_lost), cmocka_unit_test(test_pieces),
-        cmocka_unit_test(test_bytes), cmocka_unit_test(test_nested),       cmocka_unit_test(test_decoder),
+        cmocka_unit_test(test_whole),        cmocka_unit_test(test_what_is_lost), cmocka_unit_test(test_pieces),
+        cmocka_unit_test(test_bytes),        cmocka_unit_test(test_nested),       cmocka_unit_test(test_decoder),
         cmocka_unit_test(test_useful_bytes),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

@@ -18,10 +18,10 @@
 
 /** The result of a short run in some units. */
 typedef struct result {
-    double psnr, decoded;  /**< PSNR of training views; PSNR of test views from the stream */
+    double psnr, decoded;     /**< PSNR of training views; PSNR of test views from the stream */
     double near_plane, scale; /**< in the original units */
     uint32_t anchors;
-    float *colours;        /**< of the anchors */
+    float *colours; /**< of the anchors */
     size_t n_colours;
 } result;
 
@@ -108,7 +108,7 @@ static void units_do_not_matter(void **state)
     static const struct {
         double factor;
         int exact;
-    } rows[] = { { 0x1p-20, 1 }, { 0x1p-13, 1 }, { 0x1p13, 1 }, { 0x1p20, 1 }, { 1e-6, 0 }, { 1e-4, 0 }, { 1e4, 0 }, { 1e6, 0 } };
+    } rows[] = {{0x1p-20, 1}, {0x1p-13, 1}, {0x1p13, 1}, {0x1p20, 1}, {1e-6, 0}, {1e-4, 0}, {1e4, 0}, {1e6, 0}};
     unlink(in("points3d.ply")); /* else the points determine the units */
     const result one = train_scaled(1);
     if (!(one.psnr > 12 && one.decoded > 12))
@@ -153,14 +153,14 @@ static void put_views(adcgs_scene *s, adcgs_scene_view views[VIEWS], int panoram
 /** Parallel cameras, and cameras in one place: the assumed distance of the scene scales with the units, too. */
 static void frames_go_with_units(void **state)
 {
-    static const double factors[] = { 0x1p-30, 0x1p-20, 0x1p20, 0x1p30 };
+    static const double factors[] = {0x1p-30, 0x1p-20, 0x1p20, 0x1p30};
     for (int kind = 0; kind < 8; kind++) {
         const int panorama = kind & 1, points = kind >> 1 & 1, bound = kind >> 2;
-        double origin[3] = { 0 }, scale = 0;
+        double origin[3] = {0}, scale = 0;
         for (int i = -1; i < (int)ADCGS_COUNTOF(factors); i++) {
             const double factor = i < 0 ? 1 : factors[i];
             adcgs_scene_view views[VIEWS];
-            adcgs_scene s = { .near_bound = bound ? 0.5 * factor : 0 };
+            adcgs_scene s = {.near_bound = bound ? 0.5 * factor : 0};
             double position[3][3];
             double x[3], length;
             put_views(&s, views, panorama, factor);
@@ -189,6 +189,6 @@ static void frames_go_with_units(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(units_do_not_matter), cmocka_unit_test(frames_go_with_units) };
+    const struct CMUnitTest tests[] = {cmocka_unit_test(units_do_not_matter), cmocka_unit_test(frames_go_with_units)};
     return cmocka_run_group_tests(tests, open_scene, close_scene);
 }

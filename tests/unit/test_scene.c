@@ -74,9 +74,9 @@ static void expect_views(uint32_t train, uint32_t val, uint32_t test)
 
 static void test_single(void **state)
 {
-    expect_good(open_single("{\"w\":6,\"h\":4,\"fl_x\":5,\"camera_model\":\"OPENCV\",\"k1\":0,\"p2\":0.0,\"fps\":25,\"frames\":["
-                            FRAME("a.ppm", "") "," FRAME("b.ppm", ",\"fl_x\":7,\"cx\":1.5,\"cy\":2.25") ","
-                            FRAME("a.ppm", "") "]}"));
+    expect_good(
+        open_single("{\"w\":6,\"h\":4,\"fl_x\":5,\"camera_model\":\"OPENCV\",\"k1\":0,\"p2\":0.0,\"fps\":25,\"frames\":"
+                    "[" FRAME("a.ppm", "") "," FRAME("b.ppm", ",\"fl_x\":7,\"cx\":1.5,\"cy\":2.25") "," FRAME("a.ppm", "") "]}"));
     expect_views(2, 0, 1);
     assert_true(scene->n_times == 1 && scene->duration == 0.0 && adcgs_fps_value(scene->rate) == 25.0 && !scene->has_alpha);
     assert_true(scene->background[0] == 0.0f && scene->points.n == 0);
@@ -94,8 +94,8 @@ static void test_single(void **state)
 
 static void test_filename_lists(void **state)
 {
-    expect_good(open_single("{\"fl_x\":5,\"train_filenames\":[\"b.ppm\"],\"val_filenames\":[\"a.ppm\"],\"frames\":["
-                            FRAME("a.ppm", "") "," FRAME("b.ppm", "") "," FRAME("c.tif", "") "]}"));
+    expect_good(open_single("{\"fl_x\":5,\"train_filenames\":[\"b.ppm\"],\"val_filenames\":[\"a.ppm\"],\"frames\":[" FRAME(
+        "a.ppm", "") "," FRAME("b.ppm", "") "," FRAME("c.tif", "") "]}"));
     expect_views(1, 1, 0);
     adcgs_scene_free(&scene);
     expect_bad("{\"fl_x\":5,\"train_filenames\":[],\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "frames", "training");
@@ -104,9 +104,9 @@ static void test_filename_lists(void **state)
 /** Times, extensions, alpha, field of view, initial points. */
 static void test_split_files(void **state)
 {
-    put_text("transforms_train.json", "{\"camera_angle_x\":1.5707963267948966,\"frames\":["
-                                      FRAME("./c", ",\"time\":0.0") "," FRAME("c.tif", ",\"time\":0.5") ","
-                                      FRAME("c", ",\"time\":1.0") "," FRAME("c", ",\"time\":1") "]}");
+    put_text("transforms_train.json",
+             "{\"camera_angle_x\":1.5707963267948966,\"frames\":[" FRAME("./c", ",\"time\":0.0") "," FRAME(
+                 "c.tif", ",\"time\":0.5") "," FRAME("c", ",\"time\":1.0") "," FRAME("c", ",\"time\":1") "]}");
     put_text("transforms_test.json", "{\"camera_angle_x\":1.5707963267948966,\"frames\":[" FRAME("./c", ",\"time\":0.75") "]}");
     put_text("points3d.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                              "end_header\n1 2 3\n");
@@ -121,7 +121,9 @@ static void test_split_files(void **state)
     assert_true(c->width == 6 && c->height == 4 && fabs(c->fx - 3.0) < 1e-12 && fabs(c->fy - 3.0) < 1e-12);
     adcgs_scene_free(&scene);
 
-    const adcgs_scene_options options = {.has_background = 1, .background = {0.25f, 0.5f, 1.0f}, .rate = {10, 1},
+    const adcgs_scene_options options = {.has_background = 1,
+                                         .background = {0.25f, 0.5f, 1.0f},
+                                         .rate = {10, 1},
                                          .points_path = in("missing.ply")};
     expect_error(adcgs_scene_open(&scene, folder, &options, &error), ADCGS_ERR_IO, "missing.ply", "No such file");
 }
@@ -153,11 +155,11 @@ static void test_duration(void **state)
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.166667") "," TIMED("0.5") "," TIMED("0.666667") "," TIMED("1"),
                 ",\"frames\":[" TIMED("0.333333") "," TIMED("0.833333"), 30, 1, 6);
     /* The last frames are for testing. */
-    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("0.5"), ",\"frames\":[" TIMED("0.75") "," TIMED("1"),
-                30, 1, 4);
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("0.5"), ",\"frames\":[" TIMED("0.75") "," TIMED("1"), 30,
+                1, 4);
     /* Test frames between evenly spaced training frames add no intervals. */
-    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.5") "," TIMED("1"), ",\"frames\":[" TIMED("0.25") "," TIMED("0.75"),
-                30, 1, 2);
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.5") "," TIMED("1"), ",\"frames\":[" TIMED("0.25") "," TIMED("0.75"), 30,
+                1, 2);
     /* No view is at the end of the third of four intervals. */
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("1"), ",\"frames\":[" TIMED("0.5"), 30, 1, 4);
     /* Test views with times of their own, as in D-NeRF: the three intervals of training count, not seventeen or five. */
@@ -188,8 +190,9 @@ static void test_mask(void **state)
     adcgs_image_free(&mask);
     for (int tiff = 0; tiff < 2; tiff++) {
         char json[1000];
-        snprintf(json, sizeof json, "{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") ","
-                 FRAME("b.ppm", ",\"mask_path\":\"./m.%s\"") "," FRAME("b.ppm", ",\"mask_path\":null") "]}",
+        snprintf(json, sizeof json,
+                 "{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") "," FRAME("b.ppm", ",\"mask_path\":\"./m.%s\"") "," FRAME(
+                     "b.ppm", ",\"mask_path\":null") "]}",
                  tiff ? "tif" : "pgm");
         expect_good(open_single(json));
         const adcgs_scene_view *view = scene->views[ADCGS_SPLIT_TRAIN];
@@ -273,7 +276,7 @@ static void test_load(void **state)
     adcgs_camera camera;
     expect_good(adcgs_scene_load(scene, view, 1, &rgb, &camera, &error));
     assert_true(camera.width == 6 && camera.height == 4 && camera.fx == 5.0);
-    assert_true(rgb[0] == 1.0f && rgb[24] == 1.0f);                                      /* transparent: white */
+    assert_true(rgb[0] == 1.0f && rgb[24] == 1.0f); /* transparent: white */
     assert_true(rgb[3] == 12.0f / 255.0f && rgb[24 + 3] == 13.0f / 255.0f && rgb[48 + 3] == 14.0f / 255.0f); /* opaque */
     float small[3] = {0};
     for (int c = 0; c < 3; c++)
@@ -346,8 +349,8 @@ static void test_bad_frames(void **state)
     expect_bad_frame(GOOD ",\"camera_model\":\"SIMPLE_RADIAL\",\"k2\":1", ADCGS_ERR_DATA, "k2", "SIMPLE_RADIAL has no k2");
     expect_bad_frame(GOOD ",\"camera_model\":\"RADIAL\",\"k3\":1", ADCGS_ERR_DATA, "k3", "RADIAL has no k3");
     expect_bad_frame(GOOD ",\"sk_x\":0.5", ADCGS_ERR_UNSUPPORTED, "sk_x", "0.5");
-    static const char *const others[] = {"THIN_PRISM_FISHEYE", "EQUIRECTANGULAR", "FISHEYE624", "ORTHOPHOTO", "VR180_L",
-                                         "opencv"};
+    static const char *const others[] = {"THIN_PRISM_FISHEYE", "EQUIRECTANGULAR", "FISHEYE624",
+                                         "ORTHOPHOTO",         "VR180_L",         "opencv"};
     for (size_t i = 0; i < ADCGS_COUNTOF(others); i++) {
         char fields[512];
         snprintf(fields, sizeof fields, GOOD ",\"camera_model\":\"%s\"", others[i]);
@@ -418,8 +421,8 @@ static void test_mixed_times(void **state)
 /** Replaces one byte of a good file at a time, or ends the file there: never a crash, always a reason. */
 static void test_mutations(void **state)
 {
-    static const char good[] = "{\"w\":6,\"h\":4,\"fl_x\":5,\"k1\":0,\"ply_file_path\":\"points3d.ply\",\"frames\":["
-                               FRAME("a.ppm", ",\"time\":0") "," FRAME("b.ppm", ",\"time\":1,\"cx\":3") "]}";
+    static const char good[] = "{\"w\":6,\"h\":4,\"fl_x\":5,\"k1\":0,\"ply_file_path\":\"points3d.ply\",\"frames\":[" FRAME(
+        "a.ppm", ",\"time\":0") "," FRAME("b.ppm", ",\"time\":1,\"cx\":3") "]}";
     static const char values[] = "\0\"[}9-e,\xff";
     char bytes[sizeof good];
     put_text("points3d.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n"
@@ -483,15 +486,21 @@ static void test_ring(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_single, no_files),        cmocka_unit_test_teardown(test_filename_lists, no_files),
-        cmocka_unit_test_teardown(test_split_files, no_files),   cmocka_unit_test_teardown(test_duration, no_files),
+        cmocka_unit_test_teardown(test_single, no_files),
+        cmocka_unit_test_teardown(test_filename_lists, no_files),
+        cmocka_unit_test_teardown(test_split_files, no_files),
+        cmocka_unit_test_teardown(test_duration, no_files),
         cmocka_unit_test_teardown(test_load, no_files),
         cmocka_unit_test_teardown(test_mask, no_files),
         cmocka_unit_test_teardown(test_moving, no_files),
-        cmocka_unit_test_teardown(test_bad_files, no_files),     cmocka_unit_test_teardown(test_bad_frames, no_files),
-        cmocka_unit_test_teardown(test_bad_poses, no_files),     cmocka_unit_test_teardown(test_straightening, no_files),
-        cmocka_unit_test_teardown(test_mixed_times, no_files),   cmocka_unit_test_teardown(test_mutations, no_files),
-        cmocka_unit_test(test_robot),                            cmocka_unit_test(test_ring),
+        cmocka_unit_test_teardown(test_bad_files, no_files),
+        cmocka_unit_test_teardown(test_bad_frames, no_files),
+        cmocka_unit_test_teardown(test_bad_poses, no_files),
+        cmocka_unit_test_teardown(test_straightening, no_files),
+        cmocka_unit_test_teardown(test_mixed_times, no_files),
+        cmocka_unit_test_teardown(test_mutations, no_files),
+        cmocka_unit_test(test_robot),
+        cmocka_unit_test(test_ring),
     };
     return cmocka_run_group_tests(tests, setup, remove_folder);
 }

@@ -81,8 +81,9 @@ static void test_poses(void **state)
             else
                 snprintf(how, sizeof how, way == 4 ? MATRIX_R "[%.17g,%.17g,%.17g]" : MATRIX_R "[[%.17g],[%.17g],[%.17g]]", v[0],
                          v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10], v[3], v[7], v[11]);
-            snprintf(text, sizeof text, "{\"adcgs_scene\":1,\"scale\":0.001,\"cameras\":[{\"name\":\"a\"," SIZE
-                     ",\"images\":\"a/f001.ppm\",%s}]}", how);
+            snprintf(text, sizeof text,
+                     "{\"adcgs_scene\":1,\"scale\":0.001,\"cameras\":[{\"name\":\"a\"," SIZE ",\"images\":\"a/f001.ppm\",%s}]}",
+                     how);
             open_good(text);
             expect_pose(train(0), i, 0.001, 1e-14);
         }
@@ -97,8 +98,10 @@ static void test_intrinsics(void **state)
     c = &train(0)->camera;
     assert_true(c->fx == 20 && c->fy == 21 && c->cx == 11.5 && c->cy == 7.5 && train(0)->lens.width == 0);
     /* A camera for 48x32, centres at integers: (11 + 0.5) / 2. */
-    open_good(FILE_OF("", "{\"name\":\"a\",\"width\":48,\"height\":32,\"fx\":40,\"fy\":42,\"cx\":11,\"cy\":15,\"pixel_centre\":0,"
-                      FOOTAGE "," IDENTITY "}"));
+    open_good(
+        FILE_OF("",
+                "{\"name\":\"a\",\"width\":48,\"height\":32,\"fx\":40,\"fy\":42,\"cx\":11,\"cy\":15,\"pixel_centre\":0," FOOTAGE
+                "," IDENTITY "}"));
     c = &train(0)->camera;
     assert_true(c->fx == 20 && c->fy == 21 && c->cx == 5.75 && c->cy == 7.75);
     open_good(FILE_OF("", CAMERA("," IDENTITY ",\"k1\":0.01,\"k2\":0.02,\"k3\":0.03,\"k4\":0.04,\"k5\":0.05,\"k6\":0.06,"
@@ -117,9 +120,12 @@ static void test_times(void **state)
 {
     open_good(FILE_OF(",\"frame_rate\":10,\"unit\":\"metre\",\"up\":\"z\",\"name\":\"times\"",
                       CAMERA(",\"count\":3,\"time_offset\":2," IDENTITY) ","
-                      "{\"name\":\"b\"," SIZE "," FOOTAGE "," IDENTITY ",\"frame_rate\":20,\"time_offset\":1.95,"
-                      "\"split\":\"test\"},"
-                      "{\"name\":\"c\"," SIZE ",\"images\":\"a/f002.ppm\"," IDENTITY ",\"time_offset\":2.1,\"split\":\"val\"}"));
+                                                                         "{\"name\":\"b\"," SIZE "," FOOTAGE "," IDENTITY
+                                                                         ",\"frame_rate\":20,\"time_offset\":1.95,"
+                                                                         "\"split\":\"test\"},"
+                                                                         "{\"name\":\"c\"," SIZE
+                                                                         ",\"images\":\"a/f002.ppm\"," IDENTITY
+                                                                         ",\"time_offset\":2.1,\"split\":\"val\"}"));
     assert_true(scene->units == 1 && scene->axes == ADCGS_AXES_Z_UP && adcgs_fps_value(scene->rate) == 10 && scene->n_times == 3);
     assert_true(fabs(scene->duration - 0.2) < 1e-12 && scene->n_views[ADCGS_SPLIT_TRAIN] == 3);
     for (uint32_t i = 0; i < 3; i++)
@@ -203,8 +209,8 @@ static void test_bad(void **state)
 
 static void test_bad_footage(void **state)
 {
-    static const char *const names[] = {"a/f%03s.ppm", "a/%d%d.ppm", "a/%n.ppm", "a/f%3d.ppm", "a/f%099d.ppm",
-                                        "a/%", "a/f%*d.ppm"};
+    static const char *const names[] = {"a/f%03s.ppm",  "a/%d%d.ppm", "a/%n.ppm",  "a/f%3d.ppm",
+                                        "a/f%099d.ppm", "a/%",        "a/f%*d.ppm"};
     char text[512];
     for (size_t i = 0; i < ADCGS_COUNTOF(names); i++) {
         snprintf(text, sizeof text, FILE_OF("", "{\"name\":\"a\"," SIZE ",\"images\":\"%s\"," IDENTITY "}"), names[i]);
@@ -250,17 +256,22 @@ static void test_calibration(void **state)
     json_t *root = json_load_file(file, 0, NULL), *cams = json_object_get(json_object_get(root, "cams"), "20190823");
     assert_int_equal(json_array_size(json_object_get(cams, "K")), 21);
     FILE *out = fopen(in("zju.json"), "w");
-    fprintf(out, "{\"adcgs_scene\":1,\"scale\":0.001,\"unit\":\"metre\",\"up\":\"z\",\"points\":\"%s/points3d.ply\","
+    fprintf(out,
+            "{\"adcgs_scene\":1,\"scale\":0.001,\"unit\":\"metre\",\"up\":\"z\",\"points\":\"%s/points3d.ply\","
             "\"points_scale\":1,\"defaults\":{\"width\":1024,\"height\":1024,\"pixel_centre\":0,\"first\":1,\"count\":15},"
-            "\"cameras\":[", path);
+            "\"cameras\":[",
+            path);
     for (size_t i = 0; i < 21; i++) {
         json_t *k = json_array_get(json_object_get(cams, "K"), i);
         char *r = rows_of(json_array_get(json_object_get(cams, "R"), i));
         char *t = rows_of(json_array_get(json_object_get(cams, "T"), i));
-        fprintf(out, "%s{\"name\":\"cam%02zu\",\"fx\":%.17g,\"fy\":%.17g,\"cx\":%.17g,\"cy\":%.17g,\"R\":%s,\"t\":%s,"
-                "\"images\":\"%s/cam%02zu/frame_%%05d.png\",\"split\":\"%s\"}", i ? "," : "", i + 1,
-                number(k, 0, 0), number(k, 1, 1), number(k, 0, 2), number(k, 1, 2),
-                r, t, path, i + 1, i == 9 || i == 20 ? "test" : i == 1 || i == 6 ? "val" : "train");
+        fprintf(out,
+                "%s{\"name\":\"cam%02zu\",\"fx\":%.17g,\"fy\":%.17g,\"cx\":%.17g,\"cy\":%.17g,\"R\":%s,\"t\":%s,"
+                "\"images\":\"%s/cam%02zu/frame_%%05d.png\",\"split\":\"%s\"}",
+                i ? "," : "", i + 1, number(k, 0, 0), number(k, 1, 1), number(k, 0, 2), number(k, 1, 2), r, t, path, i + 1,
+                i == 9 || i == 20  ? "test"
+                : i == 1 || i == 6 ? "val"
+                                   : "train");
         free(r);
         free(t);
     }
@@ -295,9 +306,9 @@ static void test_calibration(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_poses, close_it),  cmocka_unit_test_teardown(test_intrinsics, close_it),
-        cmocka_unit_test_teardown(test_times, close_it),  cmocka_unit_test_teardown(test_points, close_it),
-        cmocka_unit_test_teardown(test_bad, close_it),    cmocka_unit_test_teardown(test_bad_footage, close_it),
+        cmocka_unit_test_teardown(test_poses, close_it),       cmocka_unit_test_teardown(test_intrinsics, close_it),
+        cmocka_unit_test_teardown(test_times, close_it),       cmocka_unit_test_teardown(test_points, close_it),
+        cmocka_unit_test_teardown(test_bad, close_it),         cmocka_unit_test_teardown(test_bad_footage, close_it),
         cmocka_unit_test_teardown(test_calibration, close_it),
     };
     return cmocka_run_group_tests(tests, setup, remove_folder);

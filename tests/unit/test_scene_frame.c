@@ -14,10 +14,10 @@ static adcgs_scene scene;
 /** A camera at c that looks along d (of any length, not along y). */
 static void place(adcgs_camera *camera, const double c[3], const double d[3])
 {
-    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), z[3] = { d[0] / length, d[1] / length, d[2] / length };
-    const double flat = sqrt(z[0] * z[0] + z[2] * z[2]), x[3] = { z[2] / flat, 0, -z[0] / flat };
-    const double y[3] = { z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0] };
-    *camera = (adcgs_camera){ .width = 100, .height = 100, .fx = 80, .fy = 80, .cx = 50, .cy = 50, .near_plane = 0.01 };
+    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), z[3] = {d[0] / length, d[1] / length, d[2] / length};
+    const double flat = sqrt(z[0] * z[0] + z[2] * z[2]), x[3] = {z[2] / flat, 0, -z[0] / flat};
+    const double y[3] = {z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]};
+    *camera = (adcgs_camera){.width = 100, .height = 100, .fx = 80, .fy = 80, .cx = 50, .cy = 50, .near_plane = 0.01};
     for (int a = 0; a < 3; a++) {
         double *row = camera->cam_to_world + 4 * a;
         row[0] = x[a];
@@ -32,9 +32,9 @@ static void sweep(double outwards)
 {
     for (int i = 0; i < VIEWS; i++) {
         const double x = -1 + 2 * i / (VIEWS - 1.0);
-        place(&views[i].camera, (const double[]){ x, 0, 0 }, (const double[]){ outwards * x, 0, 1 });
+        place(&views[i].camera, (const double[]){x, 0, 0}, (const double[]){outwards * x, 0, 1});
     }
-    scene = (adcgs_scene){ .views = { views }, .n_views = { VIEWS }, .n_times = 1 };
+    scene = (adcgs_scene){.views = {views}, .n_views = {VIEWS}, .n_times = 1};
 }
 
 /** Points on a wall at z, wide enough for all cameras. */
@@ -61,7 +61,7 @@ static void find(double origin[3], double *scale)
 /** Axes that meet behind the cameras, far from the visible points, or far beyond them: the focus is on the points. */
 static void focus_is_on_what_is_seen(void **state)
 {
-    static const double outwards[] = { 0.02, 0.2, -0.02, 0 };
+    static const double outwards[] = {0.02, 0.2, -0.02, 0};
     for (size_t i = 0; i < ADCGS_COUNTOF(outwards); i++) {
         double origin[3], scale;
         sweep(outwards[i]);
@@ -105,8 +105,8 @@ static void outward_rings_have_units_of_what_is_seen(void **state)
     double origin[3], scale;
     sweep(0);
     for (int i = 0; i < VIEWS; i++) {
-        const double angle = 6.283185307179586 * i / VIEWS, d[3] = { cos(angle), 0, sin(angle) };
-        place(&views[i].camera, (const double[]){ 0.1 * d[0], 0, 0.1 * d[2] }, d);
+        const double angle = 6.283185307179586 * i / VIEWS, d[3] = {cos(angle), 0, sin(angle)};
+        place(&views[i].camera, (const double[]){0.1 * d[0], 0, 0.1 * d[2]}, d);
     }
     scene.points.n = POINTS;
     scene.points.position = calloc(POINTS, sizeof *scene.points.position);
@@ -126,8 +126,10 @@ static void outward_rings_have_units_of_what_is_seen(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(focus_is_on_what_is_seen), cmocka_unit_test(inward_axes_are_believed),
-        cmocka_unit_test(focus_is_in_front_without_points), cmocka_unit_test(outward_rings_have_units_of_what_is_seen),
+        cmocka_unit_test(focus_is_on_what_is_seen),
+        cmocka_unit_test(inward_axes_are_believed),
+        cmocka_unit_test(focus_is_in_front_without_points),
+        cmocka_unit_test(outward_rings_have_units_of_what_is_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

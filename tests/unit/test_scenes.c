@@ -79,7 +79,8 @@ static void cover(const adcgs_scenes_entry *scene, double time, int size, int sa
 {
     const adcgs_trace_camera camera = front(size);
     assert_int_equal(adcgs_trace_cover(scene->objects, scene->n_objects, scene->moving, &camera, time, size, size, samples, NULL,
-                                       out, NULL), ADCGS_OK);
+                                       out, NULL),
+                     ADCGS_OK);
 }
 
 /* Image of cross20 from the same place, one ray per pixel, with its box in one grey and without a pattern. */
@@ -270,8 +271,10 @@ static void wrong_counts_are_refused(void **state)
     static const struct {
         adcgs_scenes_options options;
         const char *text;
-    } wrong[] = {{{.name = "tiny", .cameras = 5}, "multiple"}, {{.name = "tiny", .noise = 65.0}, "noise of 65"},
-                 {{.name = "film-turn1", .cameras = 2}, "one camera"}, {{.name = "tiny", .frames = -1}, "-1 frames"}};
+    } wrong[] = {{{.name = "tiny", .cameras = 5}, "multiple"},
+                 {{.name = "tiny", .noise = 65.0}, "noise of 65"},
+                 {{.name = "film-turn1", .cameras = 2}, "one camera"},
+                 {{.name = "tiny", .frames = -1}, "-1 frames"}};
     adcgs_error error;
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(wrong); i++) {
@@ -321,12 +324,17 @@ static void writing_fails_in_one_line(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sine_is_accurate),      cmocka_unit_test(threads_do_not_matter),
-        cmocka_unit_test(pictures_have_content), cmocka_unit_test(table_is_sound),
-        cmocka_unit_test(what_is_soft_changes_its_shape), cmocka_unit_test(wrong_counts_are_refused),
-        cmocka_unit_test(covered_is_what_is_seen), cmocka_unit_test(half_of_the_samples_cover),
+        cmocka_unit_test(sine_is_accurate),
+        cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(pictures_have_content),
+        cmocka_unit_test(table_is_sound),
+        cmocka_unit_test(what_is_soft_changes_its_shape),
+        cmocka_unit_test(wrong_counts_are_refused),
+        cmocka_unit_test(covered_is_what_is_seen),
+        cmocka_unit_test(half_of_the_samples_cover),
         cmocka_unit_test(crossings_are_as_long_as_they_say),
-        cmocka_unit_test(boxes_turn_as_often_as_they_say), cmocka_unit_test(what_appears_was_not_there),
+        cmocka_unit_test(boxes_turn_as_often_as_they_say),
+        cmocka_unit_test(what_appears_was_not_there),
         cmocka_unit_test(halves_come_apart),
         cmocka_unit_test(writing_fails_in_one_line),
     };

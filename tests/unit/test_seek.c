@@ -41,7 +41,7 @@ static uint8_t digests[SEGMENTS][16];
 
 static source source_of(const adcgs_buffer *bytes)
 {
-    return (source){ .data = bytes->data, .size = bytes->size, .piece = SIZE_MAX };
+    return (source){.data = bytes->data, .size = bytes->size, .piece = SIZE_MAX};
 }
 
 /** Keys and predicted segments in turns of three. */
@@ -61,7 +61,7 @@ static int setup(void **state)
 static adcgs_decoder *open_on_demand(source *s)
 {
     adcgs_decoder *d = NULL;
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     if (adcgs_open_at(&d, read_at, s, s->size, NULL, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     return d;
@@ -70,7 +70,7 @@ static adcgs_decoder *open_on_demand(source *s)
 static void check_segment(adcgs_decoder *d, const fixture *f, int segment)
 {
     uint8_t digest[16];
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     if (adcgs_get_model_digest(d, segment, digest, &error) != ADCGS_OK)
         fail_msg("segment %d: %s", segment, error.text);
     assert_memory_equal(digest, digests[segment], sizeof digest);
@@ -193,7 +193,7 @@ static void test_damage(void **state)
     size_t begin[SEGMENTS + 1];
     adcgs_buffer bytes;
     uint8_t digest[16];
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     find_segments(&f->bytes, begin);
     leave_out(&bytes, &f->bytes, 0, 0);
     bytes.data[begin[5] - 60] ^= 4; /* in segment 4, whose key is 3 */
@@ -228,7 +228,7 @@ static void test_every_byte(void **state)
         source s = source_of(&bytes);
         adcgs_decoder *d = NULL;
         uint8_t digest[16];
-        adcgs_error error = { ADCGS_OK, "" };
+        adcgs_error error = {ADCGS_OK, ""};
         if (adcgs_open_at(&d, read_at, &s, s.size, NULL, &error) == ADCGS_OK &&
             adcgs_get_model_digest(d, 8, digest, &error) == ADCGS_OK)
             assert_memory_equal(digest, digests[8], sizeof digest);
@@ -243,9 +243,9 @@ static void test_truncated(void **state)
 {
     const fixture *f = *state;
     for (size_t size = 0; size < f->bytes.size; size += f->bytes.size / 211 + 1) {
-        source s = { .data = f->bytes.data, .size = size, .piece = SIZE_MAX };
+        source s = {.data = f->bytes.data, .size = size, .piece = SIZE_MAX};
         adcgs_decoder *d = NULL, *whole = NULL;
-        adcgs_error error = { ADCGS_OK, "" };
+        adcgs_error error = {ADCGS_OK, ""};
         const adcgs_status status = adcgs_open_memory(&whole, f->bytes.data, size, NULL, NULL);
         assert_int_equal(adcgs_open_at(&d, read_at, &s, size, NULL, &error), status);
         adcgs_info a, b;
@@ -285,11 +285,11 @@ static void test_memory(void **state)
     }
     assert_int_equal(adcgs_stream_write(&stream, &bytes, NULL), ADCGS_OK);
     source s = source_of(&bytes);
-    adcgs_memory memory = { .limit = 0 };
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .memory = &memory };
+    adcgs_memory memory = {.limit = 0};
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR, .memory = &memory};
     adcgs_stream played;
     adcgs_seek *seek;
-    adcgs_span span = { .next = bytes.data, .left = bytes.size };
+    adcgs_span span = {.next = bytes.data, .left = bytes.size};
     assert_int_equal(adcgs_stream_read(&played, adcgs_span_read, &span, &options, NULL, NULL, NULL), ADCGS_OK);
     const uint64_t whole = memory.peak;
     adcgs_stream_clear(&played, &memory);

@@ -99,17 +99,17 @@ static void names_reach_their_fields(void **state)
 static void texts_that_are_no_settings_are_refused(void **state)
 {
     static const char *const texts[][2] = {
-        { "k=17", "setting k=17: expected a whole number from 1 to 16" },
-        { "k=2.5", "setting k=2.5: expected a whole number" },
-        { "k", "setting k=: expected a whole number" },
-        { "k=", "setting k=: expected" },
-        { "k=4x", "setting k=4x: expected" },
-        { "lambda=nan", "setting lambda=nan: expected a number from 0 to 1000" },
-        { "dropout=0.91", "expected a number from 0 to 0.9" },
-        { "slim_at=0.5", "unknown setting 'slim_at'" },
-        { "k=5,,chunks=1", "unknown setting ''" },
-        { "lambda=0.0000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000001",
-          "expected NAME=VALUE" },
+        {"k=17", "setting k=17: expected a whole number from 1 to 16"},
+        {"k=2.5", "setting k=2.5: expected a whole number"},
+        {"k", "setting k=: expected a whole number"},
+        {"k=", "setting k=: expected"},
+        {"k=4x", "setting k=4x: expected"},
+        {"lambda=nan", "setting lambda=nan: expected a number from 0 to 1000"},
+        {"dropout=0.91", "expected a number from 0 to 0.9"},
+        {"slim_at=0.5", "unknown setting 'slim_at'"},
+        {"k=5,,chunks=1", "unknown setting ''"},
+        {"lambda=0.0000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000001",
+         "expected NAME=VALUE"},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(texts); i++) {
         adcgs_train_config c = preset("draft");
@@ -123,9 +123,13 @@ static void options_mean_what_settings_mean(void **state)
     static const struct {
         const char *text, *name;
         double value;
-    } both[] = { { "max_anchors=100", "max_anchors", 100 }, { "max_anchors=5000", "max_anchors", 5000 }, { "k=3", "k", 3 },
-                 { "lambda=0.35", "lambda", 0.35 }, { "iterations=77", "iterations", 77 }, { "scale=2", "scale", 2 },
-                 { "seed=9", "seed", 9 } };
+    } both[] = {{"max_anchors=100", "max_anchors", 100},
+                {"max_anchors=5000", "max_anchors", 5000},
+                {"k=3", "k", 3},
+                {"lambda=0.35", "lambda", 0.35},
+                {"iterations=77", "iterations", 77},
+                {"scale=2", "scale", 2},
+                {"seed=9", "seed", 9}};
     for (size_t i = 0; i < ADCGS_COUNTOF(both); i++) {
         const adcgs_train_config set = draft_with(both[i].text);
         adcgs_train_config option = preset("draft");
@@ -145,9 +149,9 @@ static void options_mean_what_settings_mean(void **state)
 static void configurations_are_checked(void **state)
 {
     static const char *const sets[][2] = {
-        { "n_fg=9", "n_fg=9 and chunks=4: expected a multiple" },
-        { "time_width=0", "time_rows=40 and time_width=0" },
-        { "freeze_start=0.5", "freeze_start=0.5 and quant_round_start=0.85" },
+        {"n_fg=9", "n_fg=9 and chunks=4: expected a multiple"},
+        {"time_width=0", "time_rows=40 and time_width=0"},
+        {"freeze_start=0.5", "freeze_start=0.5 and quant_round_start=0.85"},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(sets); i++) {
         const adcgs_train_config c = draft_with(sets[i][0]);
@@ -207,9 +211,9 @@ static void changes_make_the_same_again(void **state)
 
 static void parts_are_left_out(void **state)
 {
-    static const char *const synonyms[][2] = { { "densification", "refinement" },
-                                               { "weight_steps", "lattice" },
-                                               { "deformation", "fine,coarse" } };
+    static const char *const synonyms[][2] = {{"densification", "refinement"},
+                                              {"weight_steps", "lattice"},
+                                              {"deformation", "fine,coarse"}};
     for (size_t i = 0; i < ADCGS_COUNTOF(synonyms); i++) {
         adcgs_train_config c = preset("fast"), d = preset("fast");
         assert_int_equal(adcgs_train_leave_out(&c, synonyms[i][0], &error), ADCGS_OK);

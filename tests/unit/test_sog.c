@@ -202,7 +202,9 @@ static void test_splat_transform(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pictures), cmocka_unit_test(test_refused), cmocka_unit_test(test_codebook),
+        cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_codebook),
         cmocka_unit_test(test_splat_transform),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

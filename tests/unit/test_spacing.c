@@ -18,7 +18,7 @@ static adcgs_error error;
 
 static double spacing_of_all(const uint32_t (*pos)[3], uint32_t n, uint32_t i)
 {
-    double best[3] = { INFINITY, INFINITY, INFINITY }, sum = 0;
+    double best[3] = {INFINITY, INFINITY, INFINITY}, sum = 0;
     for (uint32_t j = 0; j < n; j++) {
         double d = 0;
         for (int a = 0; a < 3; a++)
@@ -48,9 +48,12 @@ static uint32_t settle(uint32_t (*pos)[3], uint32_t n)
 
 static void spacing_is_that_of_all(void **state)
 {
-    static const struct { uint32_t n; int depth, clusters; } try[] = {
-        { 1, 5, 0 }, { 2, 21, 0 }, { 3, 4, 0 }, { 4, 21, 0 }, { 5, 2, 0 }, { MOST, 3, 0 }, { MOST, 12, 0 }, { MOST, 21, 0 },
-        { MOST, 16, 20 }, { MOST, 21, 7 },
+    static const struct {
+        uint32_t n;
+        int depth, clusters;
+    } try[] = {
+        {1, 5, 0},    {2, 21, 0},    {3, 4, 0},     {4, 21, 0},     {5, 2, 0},
+        {MOST, 3, 0}, {MOST, 12, 0}, {MOST, 21, 0}, {MOST, 16, 20}, {MOST, 21, 7},
     };
     uint64_t thrown = 0;
     (void)state;
@@ -69,12 +72,12 @@ static void spacing_is_that_of_all(void **state)
         const uint32_t n = settle(pos, try[k].n);
         assert_int_equal(adcgs_spacings((const uint32_t(*)[3])pos, n, mean, &error), ADCGS_OK);
         for (uint32_t i = 0; i < n; i++)
-            assert_true(memcmp(&mean[i], &(double){ spacing_of_all((const uint32_t(*)[3])pos, n, i) }, sizeof *mean) == 0);
+            assert_true(memcmp(&mean[i], &(double){spacing_of_all((const uint32_t(*)[3])pos, n, i)}, sizeof *mean) == 0);
     }
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(spacing_is_that_of_all) };
+    const struct CMUnitTest tests[] = {cmocka_unit_test(spacing_is_that_of_all)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

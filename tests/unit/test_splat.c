@@ -109,7 +109,8 @@ static void evaluate_prediction(const adcgs_model *m, uint32_t anchor, int k, fl
         for (uint32_t i = 0; i < p->n_fg; i++)
             sum = fmaf(weight(&net->layer[0], o, p->n_fv + slots + i),
                        valued(m, anchor, 2 + i / (p->n_fg / p->chunks), m->fg[((size_t)anchor * p->k + (size_t)k) * p->n_fg + i],
-                              m->d_fg[i]), sum);
+                              m->d_fg[i]),
+                       sum);
         out[o] = sum;
     }
     later_layers(net, out);
@@ -169,9 +170,9 @@ static void evaluate_deformation(const adcgs_model *m, int role, uint32_t anchor
 static void turn(const float r[4], float position[3], float offset[3], float q[4])
 {
     const float w = r[0], x = r[1], y = r[2], z = r[3], x2 = x + x, y2 = y + y, z2 = z + z;
-    const float m[9] = {fmaf(-y2, y, fmaf(-z2, z, 1.0f)), fmaf(x2, y, -(w * z2)), fmaf(x2, z, w * y2),
-                        fmaf(x2, y, w * z2), fmaf(-x2, x, fmaf(-z2, z, 1.0f)), fmaf(y2, z, -(w * x2)),
-                        fmaf(x2, z, -(w * y2)), fmaf(y2, z, w * x2), fmaf(-x2, x, fmaf(-y2, y, 1.0f))};
+    const float m[9] = {fmaf(-y2, y, fmaf(-z2, z, 1.0f)), fmaf(x2, y, -(w * z2)), fmaf(x2, z, w * y2),    fmaf(x2, y, w * z2),
+                        fmaf(-x2, x, fmaf(-z2, z, 1.0f)), fmaf(y2, z, -(w * x2)), fmaf(x2, z, -(w * y2)), fmaf(y2, z, w * x2),
+                        fmaf(-x2, x, fmaf(-y2, y, 1.0f))};
     const float p[3] = {position[0], position[1], position[2]}, o[3] = {offset[0], offset[1], offset[2]};
     const float s[4] = {q[0], q[1], q[2], q[3]};
     for (int a = 0; a < 3; a++) {
@@ -282,9 +283,9 @@ static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
 
 static void check_primitives(const adcgs_model *m, const adcgs_primitives *p, float t)
 {
-    const float *const arrays[] = {p->mean[0],     p->mean[1],     p->mean[2],     p->scale[0],    p->scale[1],
-                                   p->scale[2],    p->rotation[0], p->rotation[1], p->rotation[2], p->rotation[3],
-                                   p->opacity,     p->colour[0],   p->colour[1],   p->colour[2]};
+    const float *const arrays[] = {p->mean[0],  p->mean[1],     p->mean[2],     p->scale[0],    p->scale[1],
+                                   p->scale[2], p->rotation[0], p->rotation[1], p->rotation[2], p->rotation[3],
+                                   p->opacity,  p->colour[0],   p->colour[1],   p->colour[2]};
     const uint32_t k = m->params.k;
     assert_int_equal(p->n, (m->n + 63) / 64 * 64 * k);
     for (uint32_t slot = 0; slot < p->n; slot++) {
@@ -736,10 +737,10 @@ static void test_position_code(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_functions),  cmocka_unit_test(test_position_code), cmocka_unit_test(test_against_reference),
-        cmocka_unit_test(test_extremes),   cmocka_unit_test(test_memory_limit),  cmocka_unit_test(test_largest_networks),
-        cmocka_unit_test(test_adaptive_steps), cmocka_unit_test(test_refused_networks),
-        cmocka_unit_test(test_spans),      cmocka_unit_test(test_bodies),        cmocka_unit_test(test_bodies_and_all),
+        cmocka_unit_test(test_functions),      cmocka_unit_test(test_position_code),    cmocka_unit_test(test_against_reference),
+        cmocka_unit_test(test_extremes),       cmocka_unit_test(test_memory_limit),     cmocka_unit_test(test_largest_networks),
+        cmocka_unit_test(test_adaptive_steps), cmocka_unit_test(test_refused_networks), cmocka_unit_test(test_spans),
+        cmocka_unit_test(test_bodies),         cmocka_unit_test(test_bodies_and_all),
     };
     return cmocka_run_group_tests_name("splat", tests, NULL, NULL);
 }

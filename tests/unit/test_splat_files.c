@@ -7,8 +7,8 @@
 #include "io/offset.h"
 #include "layouts/open.h"
 
-#define PROPERTIES                                                                                                        \
-    "property float x\nproperty float y\nproperty float z\nproperty float f_dc_0\nproperty float f_dc_1\n"                \
+#define PROPERTIES                                                                                         \
+    "property float x\nproperty float y\nproperty float z\nproperty float f_dc_0\nproperty float f_dc_1\n" \
     "property float f_dc_2\nproperty float opacity\nproperty float scale_0\nproperty float scale_1\n"
 #define TURN "property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float rot_3\n"
 #define HEAD(comments) \
@@ -53,8 +53,10 @@ static void test_headers(void **state)
 {
     char text[8192], lines[8192];
     expect_one(HEAD("comment gepr\xc3\xbc\x66t: ja \xff\x01\x7f\n") ONE);
-    snprintf(text, sizeof text, "ply\nformat ascii 1.0\ncomment %05000d\nobj_info %01500d\nelement vertex 1\n" PROPERTIES
-             "property float scale_2\n" TURN "end_header\n" ONE, 0, 0);
+    snprintf(text, sizeof text,
+             "ply\nformat ascii 1.0\ncomment %05000d\nobj_info %01500d\nelement vertex 1\n" PROPERTIES
+             "property float scale_2\n" TURN "end_header\n" ONE,
+             0, 0);
     expect_one(text);
     expect_one("ply\ncomment before the format\nformat ascii 1.0 \n\n element vertex 1 \t\n" PROPERTIES
                "  property   float   scale_2\n" TURN "end_header \n" ONE);
@@ -87,7 +89,8 @@ static void test_cr_alone(void **state)
     uint8_t file[1024];
     size_t n = 0;
     for (const char *c = "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" PROPERTIES "property float scale_2\n" TURN
-                         "end_header\n"; *c; c++)
+                         "end_header\n";
+         *c; c++)
         file[n++] = (uint8_t)(*c == '\n' ? '\r' : *c);
     for (int i = 0; i < 14; i++)
         adcgs_store_le32(file + n + 4 * (size_t)i, i ? adcgs_float_bits(values[i]) : 0x3f80000au);
@@ -142,8 +145,10 @@ static void test_other_kinds(void **state)
     char text[1024];
     adcgs_splats s;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
-        snprintf(text, sizeof text, "ply\nformat ascii 1.0\nelement vertex 1\n" PROPERTIES "property float scale_2\n" TURN
-                 "property float %s\nend_header\n1 2 3 0 0 0 0 0 0 0 1 0 0 0 0.5\n", others[i]);
+        snprintf(text, sizeof text,
+                 "ply\nformat ascii 1.0\nelement vertex 1\n" PROPERTIES "property float scale_2\n" TURN
+                 "property float %s\nend_header\n1 2 3 0 0 0 0 0 0 0 1 0 0 0 0.5\n",
+                 others[i]);
         put_text("t.ply", text);
         expect_error(adcgs_splats_read(&s, in("t.ply"), &error), ADCGS_ERR_UNSUPPORTED, "t.ply", "change with time");
     }
@@ -286,7 +291,13 @@ static void test_written(void **state)
 static double middle(int antialiased, double across, double down, double distance)
 {
     static const float black[3] = {0.0f, 0.0f, 0.0f};
-    const adcgs_camera camera = {.width = 33, .height = 33, .fx = 100.0, .fy = 100.0, .cx = 16.5, .cy = 16.5, .near_plane = 0.01,
+    const adcgs_camera camera = {.width = 33,
+                                 .height = 33,
+                                 .fx = 100.0,
+                                 .fy = 100.0,
+                                 .cx = 16.5,
+                                 .cy = 16.5,
+                                 .near_plane = 0.01,
                                  .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
     adcgs_splat_scene scene = {.radius = 1.0};
     adcgs_image image;
@@ -345,10 +356,10 @@ static void test_scenes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_headers),     cmocka_unit_test(test_cr_alone), cmocka_unit_test(test_many_properties),
-        cmocka_unit_test(test_infinities),  cmocka_unit_test(test_surfels),  cmocka_unit_test(test_other_kinds),
-        cmocka_unit_test(test_comments),    cmocka_unit_test(test_written),  cmocka_unit_test(test_antialiased),
-        cmocka_unit_test(test_scenes),      cmocka_unit_test(test_far),      cmocka_unit_test(test_far_files),
+        cmocka_unit_test(test_headers),    cmocka_unit_test(test_cr_alone), cmocka_unit_test(test_many_properties),
+        cmocka_unit_test(test_infinities), cmocka_unit_test(test_surfels),  cmocka_unit_test(test_other_kinds),
+        cmocka_unit_test(test_comments),   cmocka_unit_test(test_written),  cmocka_unit_test(test_antialiased),
+        cmocka_unit_test(test_scenes),     cmocka_unit_test(test_far),      cmocka_unit_test(test_far_files),
         cmocka_unit_test(test_degrees),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

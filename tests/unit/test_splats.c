@@ -70,10 +70,10 @@ static void expect_bad(adcgs_status status, const char *what)
     assert_true(s.n == 0 && !s.block && !s.harmonics);
 }
 
-#define BAD(left_out, odd, type, rest, count, lines, what)         \
-    do {                                                           \
+#define BAD(left_out, odd, type, rest, count, lines, what)            \
+    do {                                                              \
         put_splats("t.ply", left_out, odd, type, rest, count, lines); \
-        expect_bad(ADCGS_ERR_DATA, what);                          \
+        expect_bad(ADCGS_ERR_DATA, what);                             \
     } while (0)
 
 static void test_bad(void **state)
@@ -181,8 +181,9 @@ static void test_layout(void **state)
         "property float scale_1\nproperty float scale_2\n"
         "property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float rot_3\nend_header\n";
     const float dc = (float)(0.5 / 0.28209479177387814);
-    const float expected[17] = {1.0f, -2.0f, 3.0f, 0.0f, 0.0f, 0.0f, 0.0f, dc, -dc, (float)log(3.0),
-                                0.0f, (float)log(2.0), (float)log(0.25), 0.5f, -0.5f, 0.5f, 0.5f};
+    const float expected[17] =
+        {1.0f, -2.0f, 3.0f, 0.0f, 0.0f, 0.0f, 0.0f, dc, -dc, (float)log(3.0), 0.0f, (float)log(2.0), (float)log(0.25),
+         0.5f, -0.5f, 0.5f, 0.5f};
     adcgs_splats s;
     char bytes[sizeof header + sizeof expected + 1];
     expect_good(adcgs_splats_alloc(&s, 1, "one", &error));
@@ -476,7 +477,7 @@ static void test_cameras(void **state)
             for (uint32_t j = 0; split && j < scene->n_views[0]; j++)
                 nearest = fmin(nearest, between(&v->camera, &scene->views[0][j].camera));
         }
-    assert_true(nearest > 1e-3); /* no test view equals a training view */
+    assert_true(nearest > 1e-3);    /* no test view equals a training view */
     for (int i = 0; i < 500; i++) { /* and no direction is farther than 25 degrees from a training view */
         const double h = cos(0.1 + i * 0.006), r = sqrt(1 - h * h);
         const adcgs_camera c = {.cam_to_world = {0, 0, r * cos(i), 0, 0, 0, h, 0, 0, 0, r * sin(i), 0}};
@@ -629,14 +630,21 @@ static void test_compressed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_read),      cmocka_unit_test(test_bad),
-        cmocka_unit_test(test_layout),    cmocka_unit_test(test_round_trip), cmocka_unit_test(test_rest),
-        cmocka_unit_test(test_mutations), cmocka_unit_test_setup_teardown(test_take, open_stream, close_stream),
+        cmocka_unit_test(test_read),
+        cmocka_unit_test(test_bad),
+        cmocka_unit_test(test_layout),
+        cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_rest),
+        cmocka_unit_test(test_mutations),
+        cmocka_unit_test_setup_teardown(test_take, open_stream, close_stream),
         cmocka_unit_test_setup_teardown(test_points, open_stream, close_stream),
         cmocka_unit_test_setup_teardown(test_export, open_stream, close_stream),
-        cmocka_unit_test(test_cameras),   cmocka_unit_test(test_scene),
-        cmocka_unit_test(test_harmonics), cmocka_unit_test(test_view_dependence),
-        cmocka_unit_test(test_sunflower), cmocka_unit_test(test_compressed),
+        cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_scene),
+        cmocka_unit_test(test_harmonics),
+        cmocka_unit_test(test_view_dependence),
+        cmocka_unit_test(test_sunflower),
+        cmocka_unit_test(test_compressed),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -13,8 +13,8 @@ static const double pose[12] = {1, 0, 0, 0.5, 0, 0.8, -0.6, -3.0, 0, 0.6, 0.8, 2
 
 static adcgs_spoil_picture picture_at(int camera, int number)
 {
-    const adcgs_spoil_picture picture = {.camera = camera, .cameras = 12, .number = number, .width = 160, .time = number / 48.0,
-                                         .step = 1.0 / 24.0};
+    const adcgs_spoil_picture picture =
+        {.camera = camera, .cameras = 12, .number = number, .width = 160, .time = number / 48.0, .step = 1.0 / 24.0};
     return picture;
 }
 
@@ -44,8 +44,9 @@ static double turned(const char *text, int camera, int number)
 
 static void what_is_wrong_is_refused(void **state)
 {
-    static const char *const bad[] = {"none=1", "pose", "pose=", "pose=x", "pose=-1", "pose=nan", "pose=101", "axes=1.5",
-                                      "axes=4", "drop=1", "pose=1,", ",", "pose=1;drop=0.1", "pos=1", "poses=1", "pose,drop=0.1"};
+    static const char *const bad[] = {"none=1",          "pose",     "pose=",   "pose=x",       "pose=-1", "pose=nan",
+                                      "pose=101",        "axes=1.5", "axes=4",  "drop=1",       "pose=1,", ",",
+                                      "pose=1;drop=0.1", "pos=1",    "poses=1", "pose,drop=0.1"};
     adcgs_spoil spoil;
     adcgs_error error;
     (void)state;
@@ -175,9 +176,12 @@ static void times_are_others(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_wrong_is_refused),              cmocka_unit_test(no_fault_changes_nothing),
-        cmocka_unit_test(cameras_are_turned_as_far_as_they_say), cmocka_unit_test(other_axes_are_others),
-        cmocka_unit_test(gains_are_a_cameras),                   cmocka_unit_test(times_are_others),
+        cmocka_unit_test(what_is_wrong_is_refused),
+        cmocka_unit_test(no_fault_changes_nothing),
+        cmocka_unit_test(cameras_are_turned_as_far_as_they_say),
+        cmocka_unit_test(other_axes_are_others),
+        cmocka_unit_test(gains_are_a_cameras),
+        cmocka_unit_test(times_are_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

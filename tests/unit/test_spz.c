@@ -111,9 +111,9 @@ static size_t put_gzip(const char *name, const uint8_t *raw, size_t bytes)
 static size_t make_old(uint8_t *to, int version)
 {
     static const uint8_t head[] = {'N', 'G', 'S', 'P', 0, 0, 0, 0, 2, 0, 0, 0, 1, 12, 0, 0};
-    static const uint8_t start[] = {0, 0x10, 0, 0, 0xf0, 0xff, 1, 0, 0, /* 1, -1, 2^-12 */
-                                    0xff, 0xff, 0x7f, 0, 0, 0x80, 0, 0, 0, /* 2048 - 2^-12, -2048, 0 */
-                                    0, 255, 127, 0, 255, 128, 1, 2, 160, 0, 255, 80, 90, 100};
+    static const uint8_t start[] = {0,    0x10, 0,    0, 0xf0, 0xff, 1, 0, 0, /* 1, -1, 2^-12 */
+                                    0xff, 0xff, 0x7f, 0, 0,    0x80, 0, 0, 0, /* 2048 - 2^-12, -2048, 0 */
+                                    0,    255,  127,  0, 255,  128,  1, 2, 160, 0, 255, 80, 90, 100};
     static const uint8_t of_three[] = {255, 127, 128, 0, 128, 128};
     static const uint8_t of_four[] = {0, 0, 0, 0xc0, 0xff, 0x01, 0x00, 0x40};
     size_t n = 0;
@@ -355,9 +355,10 @@ static void test_up(void **state)
                 double was[3], is[3];
                 tip(was, &s, i, axis);
                 tip(is, &back, i, axis);
-                const double turned[3] = {was[0], axes[k] == ADCGS_SPLATS_Z_UP     ? was[2]
-                                                  : axes[k] == ADCGS_SPLATS_Y_DOWN ? -was[1]
-                                                                                   : was[1],
+                const double turned[3] = {was[0],
+                                          axes[k] == ADCGS_SPLATS_Z_UP     ? was[2]
+                                          : axes[k] == ADCGS_SPLATS_Y_DOWN ? -was[1]
+                                                                           : was[1],
                                           axes[k] == ADCGS_SPLATS_Z_UP || axes[k] == ADCGS_SPLATS_Y_DOWN
                                               ? -was[axes[k] == ADCGS_SPLATS_Z_UP ? 1 : 2]
                                               : was[2]};
@@ -422,9 +423,9 @@ static void test_splat_transform(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_ranges),     cmocka_unit_test(test_old),
-        cmocka_unit_test(test_bad),        cmocka_unit_test(test_bad_streams), cmocka_unit_test(test_bad_old),
-        cmocka_unit_test(test_extensions), cmocka_unit_test(test_mutations),  cmocka_unit_test(test_up),
+        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_ranges),          cmocka_unit_test(test_old),
+        cmocka_unit_test(test_bad),        cmocka_unit_test(test_bad_streams),     cmocka_unit_test(test_bad_old),
+        cmocka_unit_test(test_extensions), cmocka_unit_test(test_mutations),       cmocka_unit_test(test_up),
         cmocka_unit_test(test_biker),      cmocka_unit_test(test_splat_transform),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

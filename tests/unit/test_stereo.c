@@ -6,7 +6,7 @@
 
 #include "stereo/stereo.h"
 
-static const adcgs_stereo_options options = { .scale = 1, .still = 800, .moving = 60, .judges = 1 };
+static const adcgs_stereo_options options = {.scale = 1, .still = 800, .moving = 60, .judges = 1};
 
 static adcgs_stereo found; /* without threads */
 
@@ -68,9 +68,9 @@ static void what_moves_is_the_square(void **state)
 /** A place that a camera sees is known; a place that none sees is not. */
 static void what_is_known(void **state)
 {
-    assert_true(adcgs_stereo_is_known(&found, (const double[]){ 0.1, 0, 1 }));
-    assert_true(adcgs_stereo_is_known(&found, (const double[]){ 0.1, 0, 3 }));
-    assert_false(adcgs_stereo_is_known(&found, (const double[]){ 0, 0, -1 }));
+    assert_true(adcgs_stereo_is_known(&found, (const double[]){0.1, 0, 1}));
+    assert_true(adcgs_stereo_is_known(&found, (const double[]){0.1, 0, 3}));
+    assert_false(adcgs_stereo_is_known(&found, (const double[]){0, 0, -1}));
 }
 
 /** A point in front of a single camera is a floater. A point that many cameras would see, or that one knows to exist, is not. */
@@ -82,17 +82,17 @@ static void what_floats(void **state)
     assert_int_equal(floats, 0);
     for (int camera = 0; camera < CAMERAS; camera++) {
         const double *m = scene.views[ADCGS_SPLIT_TRAIN][camera * MOMENTS].camera.cam_to_world;
-        assert_true(adcgs_stereo_floats(&found, (const double[]){ m[3], m[7], 0.1 }));
-        assert_false(adcgs_stereo_floats(&found, (const double[]){ m[3], m[7], 1 }));
+        assert_true(adcgs_stereo_floats(&found, (const double[]){m[3], m[7], 0.1}));
+        assert_false(adcgs_stereo_floats(&found, (const double[]){m[3], m[7], 1}));
     }
-    assert_true(adcgs_stereo_floats(&found, (const double[]){ 0, 0, -1 }));
-    assert_false(adcgs_stereo_floats(&(adcgs_stereo){ .maps = NULL }, (const double[]){ 0, 0, -1 }));
+    assert_true(adcgs_stereo_floats(&found, (const double[]){0, 0, -1}));
+    assert_false(adcgs_stereo_floats(&(adcgs_stereo){.maps = NULL}, (const double[]){0, 0, -1}));
 }
 
 /** Share of the square's points of a frame that end this many frames before and after it. */
 static double ending(const adcgs_stereo *s, int moment, double before, double behind)
 {
-    const double ends[2] = { before / (MOMENTS - 1), behind / (MOMENTS - 1) };
+    const double ends[2] = {before / (MOMENTS - 1), behind / (MOMENTS - 1)};
     uint32_t n = 0, right = 0;
     for (uint32_t i = 0; i < s->n_moving; i++) {
         const adcgs_stereo_point *p = &s->moving[i];
@@ -149,7 +149,7 @@ static double off_by(double pixels)
     const double turn = pixels / FOCAL;
     for (int i = 0; i < VIEWS; i++) {
         const double a = i / MOMENTS % 2 ? turn : -turn;
-        const double rows[9] = { 1, 0, 0, 0, cos(a), -sin(a), 0, sin(a), cos(a) };
+        const double rows[9] = {1, 0, 0, 0, cos(a), -sin(a), 0, sin(a), cos(a)};
         for (int k = 0; k < 9; k++)
             views[i].camera.cam_to_world[4 * (k / 3) + k % 3] = rows[k];
     }
@@ -217,10 +217,14 @@ static int forget_pictures(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_still_is_the_wall), cmocka_unit_test(what_moves_is_the_square),
-        cmocka_unit_test(what_is_known),             cmocka_unit_test(what_floats),
-        cmocka_unit_test(threads_do_not_show),       cmocka_unit_test(where_it_applies),
-        cmocka_unit_test(poses_that_are_off_are_noticed), cmocka_unit_test(what_comes_and_goes_has_ends),
+        cmocka_unit_test(what_is_still_is_the_wall),
+        cmocka_unit_test(what_moves_is_the_square),
+        cmocka_unit_test(what_is_known),
+        cmocka_unit_test(what_floats),
+        cmocka_unit_test(threads_do_not_show),
+        cmocka_unit_test(where_it_applies),
+        cmocka_unit_test(poses_that_are_off_are_noticed),
+        cmocka_unit_test(what_comes_and_goes_has_ends),
         cmocka_unit_test(what_is_thin_is_found),
     };
     return cmocka_run_group_tests(tests, match_pictures, forget_pictures);

@@ -34,11 +34,11 @@ static int64_t read_pipe(void *user, void *buffer, size_t bytes)
 static adcgs_status read_stream(adcgs_stream *stream, const uint8_t *data, size_t bytes, const adcgs_read_options *options,
                                 adcgs_error *error)
 {
-    pipe p = { data, bytes, 0, SIZE_MAX };
+    pipe p = {data, bytes, 0, SIZE_MAX};
     return adcgs_stream_read(stream, read_pipe, &p, options, NULL, NULL, error);
 }
 
-static const adcgs_read_options plain = { .cpu = ADCGS_CPU_SCALAR };
+static const adcgs_read_options plain = {.cpu = ADCGS_CPU_SCALAR};
 
 static void check(adcgs_status status, const adcgs_error *error)
 {
@@ -48,7 +48,7 @@ static void check(adcgs_status status, const adcgs_error *error)
 
 static void check_equal(const adcgs_stream *a, const adcgs_stream *b)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     assert_int_equal(a->n_segments, b->n_segments);
     for (uint32_t i = 0; i < a->n_segments; i++)
         if (!adcgs_model_equal(&a->segments[i], &b->segments[i], &error))
@@ -71,7 +71,7 @@ static void check_equal(const adcgs_stream *a, const adcgs_stream *b)
 
 static void check_round_trip(adcgs_stream *stream)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream back;
     adcgs_buffer bytes, again;
     adcgs_buffer_init(&bytes);
@@ -91,7 +91,7 @@ static void check_round_trip(adcgs_stream *stream)
 
 static void make_stream(adcgs_stream *stream, int moving, uint32_t segments, uint32_t n, uint64_t seed)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_params params;
     adcgs_random_params(&params, moving, &seed);
     check(adcgs_random_stream(stream, &params, segments, n, 5, &seed, &error), &error);
@@ -101,7 +101,7 @@ static void make_stream(adcgs_stream *stream, int moving, uint32_t segments, uin
    REQ-LATN-004, REQ-LATN-005, REQ-LATN-006, REQ-LATN-010 */
 static void test_round_trip(void **state)
 {
-    static const uint32_t counts[] = { 1, 3, 63, 64, 65, 300, 700 };
+    static const uint32_t counts[] = {1, 3, 63, 64, 65, 300, 700};
     (void)state;
     for (uint64_t seed = 1; seed <= 42; seed++) {
         adcgs_stream stream;
@@ -117,7 +117,7 @@ static void test_bodies(void **state)
 {
     (void)state;
     for (uint64_t seed = 1; seed <= 12; seed++) {
-        adcgs_error error = { ADCGS_OK, "" };
+        adcgs_error error = {ADCGS_OK, ""};
         adcgs_params params;
         adcgs_stream stream;
         uint64_t random = seed;
@@ -168,8 +168,8 @@ static adcgs_status decode_bodies(adcgs_model *m, int first, int second, adcgs_e
 /* REQ-LATN-013, REQ-LATN-014 */
 static void test_bodies_refused(void **state)
 {
-    adcgs_error error = { ADCGS_OK, "" };
-    adcgs_model m = { .n = 2, .params = { .k = 2, .n_fv = 1, .chunks = 1, .bodies = 5, .time_rows = 1, .time_width = 1 } };
+    adcgs_error error = {ADCGS_OK, ""};
+    adcgs_model m = {.n = 2, .params = {.k = 2, .n_fv = 1, .chunks = 1, .bodies = 5, .time_rows = 1, .time_width = 1}};
     (void)state;
     check(adcgs_model_alloc(&m, NULL, &error), &error);
     for (int first = -1; first < 16; first++)
@@ -189,7 +189,7 @@ static void test_bodies_refused(void **state)
 /* REQ-LATN-005, REQ-LATN-007 */
 static void test_layers(void **state)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_params params;
     adcgs_stream stream;
     adcgs_buffer bytes;
@@ -227,8 +227,8 @@ static void test_layers(void **state)
 /* REQ-CONF-004 */
 static void test_threads_and_cpus(void **state)
 {
-    static const int threads[] = { 1, 2, 7 };
-    adcgs_error error = { ADCGS_OK, "" };
+    static const int threads[] = {1, 2, 7};
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream;
     adcgs_buffer bytes;
     (void)state;
@@ -238,7 +238,7 @@ static void test_threads_and_cpus(void **state)
     for (size_t i = 0; i < ADCGS_COUNTOF(threads); i++)
         for (int cpu = ADCGS_CPU_SCALAR; cpu <= (int)adcgs_cpu_best(); cpu++) {
             adcgs_stream back;
-            adcgs_read_options options = { .cpu = (adcgs_cpu_level)cpu };
+            adcgs_read_options options = {.cpu = (adcgs_cpu_level)cpu};
             check(adcgs_pool_create(&options.pool, threads[i], &error), &error);
             check(read_stream(&back, bytes.data, bytes.size, &options, &error), &error);
             check_equal(&stream, &back);
@@ -252,23 +252,23 @@ static void test_threads_and_cpus(void **state)
 /* REQ-CONF-004, REQ-CONF-005 */
 static void test_pieces_and_memory(void **state)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream, back;
     adcgs_buffer bytes;
     (void)state;
     make_stream(&stream, 1, 2, 130, 5);
     adcgs_buffer_init(&bytes);
     check(adcgs_stream_write(&stream, &bytes, &error), &error);
-    pipe p = { bytes.data, bytes.size, 0, 1 };
-    adcgs_memory memory = { 0, 0, 0 };
-    adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .memory = &memory, .strict_end = 1 };
+    pipe p = {bytes.data, bytes.size, 0, 1};
+    adcgs_memory memory = {0, 0, 0};
+    adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR, .memory = &memory, .strict_end = 1};
     check(adcgs_stream_read(&back, read_pipe, &p, &options, NULL, NULL, &error), &error);
     check_equal(&stream, &back);
     adcgs_stream_clear(&back, &memory);
     assert_true(memory.used == 0 && memory.peak > 0);
     const uint64_t peak = memory.peak;
     for (uint64_t limit = 100; limit < peak; limit += peak / 50) { /* running out at any point is clean */
-        memory = (adcgs_memory){ .limit = limit };
+        memory = (adcgs_memory){.limit = limit};
         assert_int_equal(read_stream(&back, bytes.data, bytes.size, &options, &error), ADCGS_ERR_LIMIT);
         assert_true(memory.used == 0);
     }
@@ -305,11 +305,11 @@ static void count_element(void *user, uint64_t bit, const char *element, const c
 
 static void trace_stream(const adcgs_buffer *bytes, int threads, trace *t, uint8_t digest[16])
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream back;
     adcgs_read_options options = plain;
-    pipe p = { bytes->data, bytes->size, 0, SIZE_MAX };
-    *t = (trace){ .chunks = 0 };
+    pipe p = {bytes->data, bytes->size, 0, SIZE_MAX};
+    *t = (trace){.chunks = 0};
     adcgs_md5_init(&t->md5);
     check(adcgs_pool_create(&options.pool, threads, &error), &error);
     check(adcgs_stream_read(&back, read_pipe, &p, &options, count_element, t, &error), &error);
@@ -320,7 +320,7 @@ static void trace_stream(const adcgs_buffer *bytes, int threads, trace *t, uint8
 
 static void test_trace(void **state)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     uint8_t digest[16], again[16];
     adcgs_stream stream;
     adcgs_buffer bytes;
@@ -349,7 +349,7 @@ static void test_trace(void **state)
 /** The writer refuses values that the networks cannot give, times off the ticks, and models that differ in parameters. */
 static void test_writer_refuses(void **state)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream;
     adcgs_buffer bytes;
     (void)state;
@@ -381,7 +381,7 @@ static void test_writer_refuses(void **state)
 /* REQ-STRM-010, REQ-STRM-011, REQ-STRM-034 */
 static void test_levels(void **state)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_params params;
     adcgs_stream stream, back;
     adcgs_buffer bytes;
@@ -418,10 +418,14 @@ static void test_levels(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip),       cmocka_unit_test(test_layers),
-        cmocka_unit_test(test_threads_and_cpus), cmocka_unit_test(test_pieces_and_memory),
-        cmocka_unit_test(test_trace),            cmocka_unit_test(test_writer_refuses),
-        cmocka_unit_test(test_levels),           cmocka_unit_test(test_bodies),
+        cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_layers),
+        cmocka_unit_test(test_threads_and_cpus),
+        cmocka_unit_test(test_pieces_and_memory),
+        cmocka_unit_test(test_trace),
+        cmocka_unit_test(test_writer_refuses),
+        cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_bodies),
         cmocka_unit_test(test_bodies_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

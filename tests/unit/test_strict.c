@@ -46,8 +46,8 @@ static int free_stream(void **state)
 
 static adcgs_status render(adcgs_decoder *decoder, adcgs_error *error)
 {
-    adcgs_frame frame = { .width = WIDTH, .height = WIDTH, .rgb = rgb };
-    adcgs_camera camera = { .width = WIDTH, .height = WIDTH, .fx = 8, .fy = 8, .cx = 4, .cy = 4, .near_plane = 0.01 };
+    adcgs_frame frame = {.width = WIDTH, .height = WIDTH, .rgb = rgb};
+    adcgs_camera camera = {.width = WIDTH, .height = WIDTH, .fx = 8, .fy = 8, .cx = 4, .cy = 4, .near_plane = 0.01};
     for (int i = 0; i < 3; i++)
         camera.cam_to_world[5 * i] = 1;
     return adcgs_render(decoder, &camera, 0, &frame, error);
@@ -85,7 +85,7 @@ static void assert_all(const verdicts *v, adcgs_status status)
 static adcgs_decoder *open_decoder(void)
 {
     adcgs_decoder *decoder;
-    adcgs_error error = { 0 };
+    adcgs_error error = {0};
     if (adcgs_open_memory(&decoder, stream, stream_bytes, NULL, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     return decoder;
@@ -93,7 +93,7 @@ static adcgs_decoder *open_decoder(void)
 
 static void test_rounding(void **state)
 {
-    static const int directions[] = { FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO };
+    static const int directions[] = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
     adcgs_decoder *decoder = open_decoder();
     (void)state;
     for (size_t i = 0; i < ADCGS_COUNTOF(directions); i++) {
@@ -112,7 +112,7 @@ static void test_rounding(void **state)
 /* The effect of a library linked with -ffast-math on the process: flush to zero, subnormals are zero, both. */
 static void test_flushing(void **state)
 {
-    static const unsigned modes[] = { 0x8000, 0x0040, 0x8040 };
+    static const unsigned modes[] = {0x8000, 0x0040, 0x8040};
     adcgs_decoder *decoder = open_decoder();
     const unsigned saved = _mm_getcsr();
     (void)state;

@@ -347,7 +347,7 @@ static void test_changing_region(void **state)
         for (int i = 0; i < VALUES; i++)
             picture[i] = 0.4f + 0.002f * normal_value();
         if (t == 7)
-            picture[10 * W + 5] += 0.2f;          /* red of one pixel */
+            picture[10 * W + 5] += 0.2f; /* red of one pixel */
         if (t == 8)
             picture[PLANE + 10 * W + 20] += 0.12f; /* green of one pixel, by less */
         for (int i = 0; t == 9 && i < 25; i++)
@@ -371,9 +371,15 @@ static void test_changing_region(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_square), cmocka_unit_test(test_constant_shift),    cmocka_unit_test(test_blinking),
-        cmocka_unit_test(test_still),  cmocka_unit_test(test_against_reference), cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_noise),  cmocka_unit_test(test_worth),             cmocka_unit_test(test_changing_region),
+        cmocka_unit_test(test_square),
+        cmocka_unit_test(test_constant_shift),
+        cmocka_unit_test(test_blinking),
+        cmocka_unit_test(test_still),
+        cmocka_unit_test(test_against_reference),
+        cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_worth),
+        cmocka_unit_test(test_changing_region),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

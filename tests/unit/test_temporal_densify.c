@@ -19,8 +19,11 @@ static adcgs_train_config small_config(void)
 {
     adcgs_train_config c;
     assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
-    assert_int_equal(adcgs_train_set(&c, "start_anchors=200,max_anchors=300,densify_interval=10,k=4,n_fv=12,theta_width=16,"
-                                         "omega_width=16,varpi_width=16,entropy_width=16", &error), ADCGS_OK);
+    assert_int_equal(adcgs_train_set(&c,
+                                     "start_anchors=200,max_anchors=300,densify_interval=10,k=4,n_fv=12,theta_width=16,"
+                                     "omega_width=16,varpi_width=16,entropy_width=16",
+                                     &error),
+                     ADCGS_OK);
     c.iterations = 80;
     return c;
 }
@@ -46,7 +49,7 @@ static void lives_begin_at_their_moments(void **state)
     config.params.bodies = 0;
     adcgs_trainer *t = make(&config);
     const float half = config.lifetime_frames / (MOMENTS - 1);
-    int at_moment[MOMENTS] = { 0 }, fast = 0, moving = 0, still = 0;
+    int at_moment[MOMENTS] = {0}, fast = 0, moving = 0, still = 0;
     assert_int_equal(t->config.params.spans, 1);
     for (uint32_t i = 0; i < t->f->n; i++) {
         const float m = (span_of(t, i, ADCGS_SPAN_MIDDLE) / 8 + 0.5f) * (MOMENTS - 1);
@@ -78,9 +81,9 @@ static void what_keeps_its_form_is_a_body(void **state)
     assert_non_null(begin);
     assert_int_equal(t->config.params.bodies, 1);
     adcgs_trainer_prepare_networks(t);
-    adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     memcpy(begin, p->mean[0], p->n * sizeof *begin);
-    adcgs_pass_forward(t->pass, t->f, 1, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(t->pass, t->f, 1, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     for (uint32_t i = 0; i < t->f->n; i++) {
         const size_t slot = adcgs_fmodel_slot(t->f, i, 0);
         const double way = (double)(p->mean[0][slot] - begin[slot]) * t->scale;
@@ -231,12 +234,12 @@ static void one_moment_does_not_overflow(void **state)
     enum { MANY = 1000 };
     adcgs_train_config config = small_config();
     adcgs_stereo_point *points = calloc(MANY, sizeof *points);
-    float moment[] = { 0, 0.5f, 1 };
+    float moment[] = {0, 0.5f, 1};
     adcgs_start_points start;
     assert_non_null(points);
     for (int i = 0; i < MANY; i++)
-        points[i] = (adcgs_stereo_point){ .x = { 0.001 * i, 0, SQUARE }, .t = 0.5f, .size = 0.01f, .moves = 1 };
-    const adcgs_stereo many = { .n_moving = MANY, .moving = points, .n_frames = 3, .frame_time = moment };
+        points[i] = (adcgs_stereo_point){.x = {0.001 * i, 0, SQUARE}, .t = 0.5f, .size = 0.01f, .moves = 1};
+    const adcgs_stereo many = {.n_moving = MANY, .moving = points, .n_frames = 3, .frame_time = moment};
     config.params.spans = 0;
     if (adcgs_start_points_find(&start, &scene, &config, &many, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
@@ -248,10 +251,12 @@ static void one_moment_does_not_overflow(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_moment_does_not_overflow), cmocka_unit_test(lives_begin_at_their_moments),
+        cmocka_unit_test(one_moment_does_not_overflow),
+        cmocka_unit_test(lives_begin_at_their_moments),
         cmocka_unit_test(what_keeps_its_form_is_a_body),
         cmocka_unit_test(spans_need_what_moves),
-        cmocka_unit_test(what_is_missing_is_found),     cmocka_unit_test(absence_is_no_idleness),
+        cmocka_unit_test(what_is_missing_is_found),
+        cmocka_unit_test(absence_is_no_idleness),
         cmocka_unit_test(views_of_other_places_are_no_idleness),
         cmocka_unit_test(runs_go_on_and_decode),
     };

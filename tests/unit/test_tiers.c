@@ -24,7 +24,7 @@ enum { SEEDS = 12 };
 /** A stream of one segment with two or three tiers. */
 static void make(adcgs_stream *stream, adcgs_buffer *bytes, uint64_t seed)
 {
-    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_error error = {ADCGS_OK, ""};
     adcgs_params params;
     adcgs_random_small_params(&params, 2, &seed);
     adcgs_buffer_init(bytes);
@@ -117,7 +117,7 @@ static void test_wanted(void **state)
 /** Expects a partial model to equal the written one without the absent tiers; layers may be concealed. */
 static void check_part(const adcgs_model *whole, const adcgs_model *part)
 {
-    adcgs_error difference = { ADCGS_OK, "" };
+    adcgs_error difference = {ADCGS_OK, ""};
     adcgs_model coarser;
     assert_int_equal(adcgs_model_validate(part, &difference), ADCGS_OK);
     assert_int_equal(adcgs_model_coarser(&coarser, whole, whole->finest + 1 - part->absent, NULL, NULL), ADCGS_OK);
@@ -149,13 +149,13 @@ static void test_every_prefix(void **state)
 {
     adcgs_stream stream, part;
     adcgs_buffer bytes;
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR };
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR};
     int drawn = 0;
     (void)state;
     make(&stream, &bytes, 3);
     for (size_t n = 0; n <= bytes.size; n++) {
-        adcgs_span from = { .next = bytes.data, .left = n };
-        adcgs_error error = { ADCGS_OK, "" };
+        adcgs_span from = {.next = bytes.data, .left = n};
+        adcgs_error error = {ADCGS_OK, ""};
         if (adcgs_stream_read(&part, adcgs_span_read, &from, &options, NULL, NULL, &error) != ADCGS_OK) {
             assert_int_equal(error.status, ADCGS_ERR_TRUNCATED);
             assert_false(drawn);
@@ -181,7 +181,7 @@ static void test_layers_of_first(void **state)
 {
     adcgs_stream stream, part;
     adcgs_buffer bytes, cut;
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR };
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR};
     (void)state;
     make(&stream, &bytes, 4);
     adcgs_buffer_init(&cut);
@@ -193,7 +193,7 @@ static void test_layers_of_first(void **state)
             adcgs_write_bytes(&cut, bytes.data + next, end - next);
         }
     }
-    adcgs_span from = { .next = cut.data, .left = cut.size };
+    adcgs_span from = {.next = cut.data, .left = cut.size};
     assert_int_equal(adcgs_stream_read(&part, adcgs_span_read, &from, &options, NULL, NULL, NULL), ADCGS_OK);
     assert_int_equal(part.segments[0].absent, stream.segments[0].finest);
     assert_int_equal(part.segments[0].layers, 2);
@@ -208,11 +208,11 @@ static void test_damaged(void **state)
 {
     adcgs_stream stream, part;
     adcgs_buffer bytes;
-    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR };
+    const adcgs_read_options options = {.cpu = ADCGS_CPU_SCALAR};
     (void)state;
     make(&stream, &bytes, 5);
     for (size_t n = place_of(&bytes, 1); n < bytes.size; n++) {
-        adcgs_span from = { .next = bytes.data, .left = bytes.size };
+        adcgs_span from = {.next = bytes.data, .left = bytes.size};
         uint32_t faults;
         bytes.data[n] ^= 0x55;
         assert_int_not_equal(adcgs_stream_read(&part, adcgs_span_read, &from, &options, NULL, NULL, NULL), ADCGS_OK);
@@ -231,7 +231,7 @@ static void test_damaged(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_wanted), cmocka_unit_test(test_every_prefix),
-                                        cmocka_unit_test(test_layers_of_first), cmocka_unit_test(test_damaged) };
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_wanted), cmocka_unit_test(test_every_prefix),
+                                       cmocka_unit_test(test_layers_of_first), cmocka_unit_test(test_damaged)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -115,8 +115,9 @@ static void time_code(const adcgs_fmodel *f, double t, double *code)
         code[j] = 0;
         for (int i = -1; i <= rows; i++) { /* cubic B-spline about row i, by distance; rows beyond the ends continue linearly */
             const double first = (double)z[j], last = (double)z[(rows - 1) * columns + j], d = fabs(u - i);
-            const double row = i < 0 ? 2 * first - (double)z[columns + j] :
-                               i == rows ? 2 * last - (double)z[(rows - 2) * columns + j] : (double)z[i * columns + j];
+            const double row = i < 0       ? 2 * first - (double)z[columns + j]
+                               : i == rows ? 2 * last - (double)z[(rows - 2) * columns + j]
+                                           : (double)z[i * columns + j];
             const double smooth = d < 1 ? 2.0 / 3 - d * d + d * d * d / 2 : d < 2 ? pow(2 - d, 3) / 6 : 0;
             code[j] += row * (f->params.smooth_time ? smooth : fmax(1 - d, 0));
         }
@@ -126,7 +127,7 @@ static void time_code(const adcgs_fmodel *f, double t, double *code)
 /** Rotates v by a unit quaternion. */
 static void turn(const double q[4], const double v[3], double out[3])
 {
-    const double conj[4] = { q[0], -q[1], -q[2], -q[3] }, pure[4] = { 0, v[0], v[1], v[2] };
+    const double conj[4] = {q[0], -q[1], -q[2], -q[3]}, pure[4] = {0, v[0], v[1], v[2]};
     double turned[4], back[4];
     product(q, pure, turned);
     product(turned, conj, back);
@@ -178,7 +179,7 @@ static double ref_span(const adcgs_fmodel *f, uint32_t anchor, double t)
 /** Primitive k of an anchor at time t: mean 3, scale 3, rotation 4, opacity, colour 3. */
 static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double t, double out[VALUES])
 {
-    double x[64], th[14], om[12], va[4 * K], q0[4], qr[4], q[4], off[4] = { 0 }, turned[4], back[4];
+    double x[64], th[14], om[12], va[4 * K], q0[4], qr[4], q[4], off[4] = {0}, turned[4], back[4];
     for (int i = 0; i < NV; i++)
         x[i] = value(f, ADCGS_P_FV, anchor, i);
     for (int i = 0; i < K; i++)
@@ -204,7 +205,7 @@ static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double 
     normalise(qr);
     normalise(q0);
     product(qr, q0, q);
-    const double conj[4] = { qr[0], -qr[1], -qr[2], -qr[3] };
+    const double conj[4] = {qr[0], -qr[1], -qr[2], -qr[3]};
     product(qr, off, turned);
     product(turned, conj, back);
     for (int a = 0; a < 3; a++) {
@@ -307,21 +308,42 @@ static void spread_bodies(adcgs_fmodel *f)
 static int setup(void **state)
 {
     const int spans = (uintptr_t)*state >= WITH_SPANS;
-    const adcgs_params params = { .k = K, .n_fv = NV, .n_fg = NG, .chunks = CHUNKS, .n_eta = ETA, .octaves = OCTAVES,
-                                  .fine_uses_fv = 1, .coarse_rotation = 1, .adaptive_steps = 1, .spans = (uint8_t)spans,
-                                  .bodies = spans ? 2 : 0, .smooth_time = (uint8_t)spans,
-                                  .time_rows = 4, .time_width = 3 };
-    const adcgs_shape shape = { .theta_width = 6, .theta_hidden = 2, .omega_width = 5, .omega_hidden = 3, .varpi_width = 6,
-                                .varpi_hidden = 2, .entropy_width = 6, .entropy_hidden = 2, .step_fv = 0.1f, .step_fg = 0.2f,
-                                .step_sigma = 0.1f, .step_colour = 0.05f, .depth = 8 };
-    const float origin[3] = { -1, -1, -1 };
+    const adcgs_params params = {.k = K,
+                                 .n_fv = NV,
+                                 .n_fg = NG,
+                                 .chunks = CHUNKS,
+                                 .n_eta = ETA,
+                                 .octaves = OCTAVES,
+                                 .fine_uses_fv = 1,
+                                 .coarse_rotation = 1,
+                                 .adaptive_steps = 1,
+                                 .spans = (uint8_t)spans,
+                                 .bodies = spans ? 2 : 0,
+                                 .smooth_time = (uint8_t)spans,
+                                 .time_rows = 4,
+                                 .time_width = 3};
+    const adcgs_shape shape = {.theta_width = 6,
+                               .theta_hidden = 2,
+                               .omega_width = 5,
+                               .omega_hidden = 3,
+                               .varpi_width = 6,
+                               .varpi_hidden = 2,
+                               .entropy_width = 6,
+                               .entropy_hidden = 2,
+                               .step_fv = 0.1f,
+                               .step_fg = 0.2f,
+                               .step_sigma = 0.1f,
+                               .step_colour = 0.05f,
+                               .depth = 8};
+    const float origin[3] = {-1, -1, -1};
     static uint32_t pos[ANCHORS][3];
     for (uint32_t i = 0; i < ANCHORS; i++)
         pos[i][0] = i, pos[i][1] = 3 * i % 200, pos[i][2] = 7 * i % 200;
     fixture *x = calloc(1, sizeof *x);
     adcgs_error error;
     assert_int_equal(adcgs_fmodel_create(&x->f, &params, &shape, origin, 1.0f / 128, (const uint32_t(*)[3])pos, ANCHORS, 3,
-                                         &error), ADCGS_OK);
+                                         &error),
+                     ADCGS_OK);
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         randomise(x->f->param[i].p, x->f->param[i].n, i < ADCGS_P_ANCHOR ? 0.4 : 0.15, (uint64_t)i);
     x->f->moving[5] = 0;
@@ -373,7 +395,7 @@ static void test_forward(void **state)
 {
     const fixture *x = *state;
     const size_t slots = x->pass->primitives.n;
-    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     for (uint32_t a = 0; a < ANCHORS; a++)
         for (int k = 0; k < K; k++) {
             double p[VALUES];
@@ -391,11 +413,11 @@ static void test_other_time(void **state)
     const size_t bytes = ADCGS_ROWS * (size_t)x->pass->primitives.n * sizeof(float);
     float *whole = malloc(bytes);
     assert_non_null(whole);
-    adcgs_pass_forward(x->pass, x->f, 0.7f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(x->pass, x->f, 0.7f, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     memcpy(whole, x->pass->prim, bytes);
-    adcgs_pass_forward(x->pass, x->f, 0.2f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(x->pass, x->f, 0.2f, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     assert_memory_not_equal(whole, x->pass->prim, bytes);
-    adcgs_pass_forward(x->pass, x->f, 0.7f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL, .other_time = 1 });
+    adcgs_pass_forward(x->pass, x->f, 0.7f, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL, .other_time = 1});
     assert_memory_equal(whole, x->pass->prim, bytes);
     free(whole);
 }
@@ -446,7 +468,7 @@ static void test_distortion_gradients(void **state)
     const fixture *x = *state;
     const size_t slots = x->pass->primitives.n;
     clear_gradients(x->f);
-    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     memset(x->pass->grad, 0, 16 * slots * sizeof(float));
     for (uint32_t a = 0; a < ANCHORS; a++)
         for (int k = 0; k < K; k++) {
@@ -472,7 +494,7 @@ static void test_rate_gradients(void **state)
     const fixture *x = *state;
     adcgs_rate rate;
     clear_gradients(x->f);
-    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     memset(x->pass->grad, 0, 16 * (size_t)x->pass->primitives.n * sizeof(float));
     adcgs_pass_backward(x->pass, x->f, ADCGS_DEFORM_ALL, 1, 1, 0, &rate);
     assert_float_equal(rate.total, ref_rate(x->f), 5e-6 * rate.total);
@@ -488,7 +510,7 @@ static double noisy_sum(const fixture *x)
     const size_t slots = x->pass->primitives.n;
     double sum = 0;
     adcgs_pass_forward(x->pass, x->f, 0.4f,
-                       &(adcgs_pass_mode){ .quant = ADCGS_QUANT_NOISE, .deform = ADCGS_DEFORM_ALL, .seed = 5 });
+                       &(adcgs_pass_mode){.quant = ADCGS_QUANT_NOISE, .deform = ADCGS_DEFORM_ALL, .seed = 5});
     for (uint32_t a = 0; a < ANCHORS; a++)
         for (int k = 0; k < K; k++) {
             const size_t slot = ((size_t)(a / 64) * K + (size_t)k) * 64 + a % 64;
@@ -535,9 +557,9 @@ static void test_step_gradients(void **state)
 /** Moves a place by the motion that F_omega gives. */
 static void ref_motion(const double om[12], const double place[3], double out[3])
 {
-    double q[4] = { 1, om[9], om[10], om[11] }, v[4] = { 0, place[0], place[1], place[2] }, turned[4], back[4];
+    double q[4] = {1, om[9], om[10], om[11]}, v[4] = {0, place[0], place[1], place[2]}, turned[4], back[4];
     normalise(q);
-    const double conj[4] = { q[0], -q[1], -q[2], -q[3] };
+    const double conj[4] = {q[0], -q[1], -q[2], -q[3]};
     product(q, v, turned);
     product(turned, conj, back);
     for (int a = 0; a < 3; a++)
@@ -582,7 +604,7 @@ static double rigid_energy(const adcgs_fmodel *f)
 static int32_t near_by_search(const adcgs_fmodel *f, uint32_t i, int drawn, int k)
 {
     const double reach = (double)ADCGS_RIGIDITY_REACH / (double)f->voxel;
-    uint8_t taken[ANCHORS] = { 0 };
+    uint8_t taken[ANCHORS] = {0};
     int32_t best = -1;
     for (int turn = 0; turn <= k; turn++) {
         uint64_t least = UINT64_MAX;
@@ -607,7 +629,7 @@ static int32_t near_by_search(const adcgs_fmodel *f, uint32_t i, int drawn, int 
 static void test_neighbours(void **state)
 {
     const fixture *x = *state;
-    adcgs_rigidity rigid = { 0 };
+    adcgs_rigidity rigid = {0};
     adcgs_error error;
     assert_int_equal(adcgs_rigidity_build(&rigid, x->f, NULL, &error), ADCGS_OK);
     for (uint32_t i = 0; i < ANCHORS; i++)
@@ -621,11 +643,11 @@ static void test_neighbours(void **state)
 static void test_rigid(void **state)
 {
     const fixture *x = *state;
-    adcgs_rigidity rigid = { 0 };
+    adcgs_rigidity rigid = {0};
     adcgs_error error;
     assert_int_equal(adcgs_rigidity_build(&rigid, x->f, NULL, &error), ADCGS_OK);
     rigid_under_test = &rigid;
-    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
     clear_gradients(x->f);
     memset(x->pass->grad, 0, 16 * (size_t)x->pass->primitives.n * sizeof(float));
     assert_float_equal(adcgs_rigidity_pull(&rigid, x->pass, x->f, 1), rigid_energy(x->f), 1e-5);
@@ -639,16 +661,16 @@ static void test_rigid(void **state)
 /** Price of size: its value and gradient against a calculation by hand. Invisible primitives have neither. */
 static void test_area(void **state)
 {
-    static const float sd[3][4] = { { 1, 2, 5, 0.5f }, { 2, 3, 7, 0.25f }, { 4, 1, 9, 1 } };
-    static const float opacity[4] = { 0.5f, 0.25f, 0, 0.99f };
-    const float *const s[3] = { sd[0], sd[1], sd[2] };
-    const adcgs_primitives primitives = { .n = 4, .scale = { sd[0], sd[1], sd[2] }, .opacity = opacity };
-    float g[3][4] = { { 1, 1, 1, 1 }, { 1, 1, 1, 1 }, { 1, 1, 1, 1 } };
+    static const float sd[3][4] = {{1, 2, 5, 0.5f}, {2, 3, 7, 0.25f}, {4, 1, 9, 1}};
+    static const float opacity[4] = {0.5f, 0.25f, 0, 0.99f};
+    const float *const s[3] = {sd[0], sd[1], sd[2]};
+    const adcgs_primitives primitives = {.n = 4, .scale = {sd[0], sd[1], sd[2]}, .opacity = opacity};
+    float g[3][4] = {{1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}};
     double area = 0;
     for (int i = 0; i < 4; i++)
         area += i == 2 ? 0 : (double)(s[0][i] * s[1][i] + s[1][i] * s[2][i] + s[2][i] * s[0][i]);
-    float *const to[3] = { g[0], g[1], g[2] };
-    const double price = adcgs_scale_penalty(&primitives, &(adcgs_viewpoints){ .n = 0 }, 0.5f, to);
+    float *const to[3] = {g[0], g[1], g[2]};
+    const double price = adcgs_scale_penalty(&primitives, &(adcgs_viewpoints){.n = 0}, 0.5f, to);
     assert_float_equal(price, 0.5 * area / 9, 1e-6);
     for (int a = 0; a < 3; a++)
         for (int i = 0; i < 4; i++)
@@ -658,19 +680,19 @@ static void test_area(void **state)
 /** The same with viewpoints, which include places between cameras: a closer primitive counts as larger. */
 static void test_area_seen(void **state)
 {
-    static const float camera[5][3] = { { 0, 0, 0 }, { 2, 0, 0 }, { 0, 0, 0 }, { 0, 6, 0 }, { 2, 0, 0 } };
-    static const float at[3][4] = { { 1, 3, 0, 0 }, { 0.25f, 1, 0, 6.01f }, { 0, 0, 0.1f, 0 } }; /* one row per axis */
-    static const float larger[4] = { 16, 0.5f, 100, 400 };
-    static const float one[4] = { 1, 1, 1, 1 };
-    const float *const mean[3] = { at[0], at[1], at[2] };
-    adcgs_primitives primitives = { .n = 4, .scale = { one, one, one }, .opacity = one };
-    float g[3][4] = { { 0 } };
-    adcgs_viewpoints viewpoints = { .n = 0 };
+    static const float camera[5][3] = {{0, 0, 0}, {2, 0, 0}, {0, 0, 0}, {0, 6, 0}, {2, 0, 0}};
+    static const float at[3][4] = {{1, 3, 0, 0}, {0.25f, 1, 0, 6.01f}, {0, 0, 0.1f, 0}}; /* one row per axis */
+    static const float larger[4] = {16, 0.5f, 100, 400};
+    static const float one[4] = {1, 1, 1, 1};
+    const float *const mean[3] = {at[0], at[1], at[2]};
+    adcgs_primitives primitives = {.n = 4, .scale = {one, one, one}, .opacity = one};
+    float g[3][4] = {{0}};
+    adcgs_viewpoints viewpoints = {.n = 0};
     adcgs_error error;
     memcpy(primitives.mean, mean, sizeof mean);
     assert_int_equal(adcgs_viewpoints_create(&viewpoints, camera, 5, &error), ADCGS_OK);
     assert_int_equal(viewpoints.n, 3 + 2 * 3);
-    adcgs_scale_penalty(&primitives, &viewpoints, 3, (float *const[]){ g[0], g[1], g[2] });
+    adcgs_scale_penalty(&primitives, &viewpoints, 3, (float *const[]){g[0], g[1], g[2]});
     for (int i = 0; i < 4; i++)
         assert_float_equal(g[0][i], 0.5f * larger[i], 1e-4);
     adcgs_viewpoints_clear(&viewpoints);
@@ -682,7 +704,7 @@ static void test_area_many(void **state)
     (void)state;
     enum { MANY = 150, SEEN_FROM = 9 };
     static float mean[3][MANY], one[MANY], g[3][MANY], at[SEEN_FROM][3];
-    adcgs_primitives primitives = { .n = MANY, .scale = { one, one, one }, .opacity = one };
+    adcgs_primitives primitives = {.n = MANY, .scale = {one, one, one}, .opacity = one};
     memset(g, 0, sizeof g);
     for (int a = 0; a < 3; a++)
         primitives.mean[a] = mean[a];
@@ -692,8 +714,8 @@ static void test_area_many(void **state)
         at[i / 3][i % 3] = 2 * (float)adcgs_random_unit(7, 1, (uint64_t)i);
     for (int i = 0; i < MANY; i++)
         one[i] = 1;
-    const adcgs_viewpoints viewpoints = { .n = SEEN_FROM, .x = at };
-    adcgs_scale_penalty(&primitives, &viewpoints, 3 * MANY, (float *const[]){ g[0], g[1], g[2] });
+    const adcgs_viewpoints viewpoints = {.n = SEEN_FROM, .x = at};
+    adcgs_scale_penalty(&primitives, &viewpoints, 3 * MANY, (float *const[]){g[0], g[1], g[2]});
     for (int i = 0; i < MANY; i++) {
         double least = INFINITY;
         for (int j = 0; j < SEEN_FROM; j++)
@@ -706,7 +728,7 @@ static void test_area_many(void **state)
 /** Forward pass with noise. The reference gets the noise, which no parameter changes. */
 static void forward_noisy(const fixture *x, adcgs_pass *pass)
 {
-    adcgs_pass_forward(pass, x->f, 0.4f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_NOISE, .deform = 1, .seed = 5 });
+    adcgs_pass_forward(pass, x->f, 0.4f, &(adcgs_pass_mode){.quant = ADCGS_QUANT_NOISE, .deform = 1, .seed = 5});
     memset(pass->grad, 0, 16 * (size_t)pass->primitives.n * sizeof(float));
     for (int g = 0; g < ADCGS_P_ANCHOR; g++)
         noise[g] = calloc(x->f->param[g].n, sizeof(float));
@@ -794,7 +816,7 @@ static void test_adaptive_rounding(void **state)
     const fixture *x = *state;
     for (uint32_t i = 0; i < x->f->groups * (2 + CHUNKS) * 64; i++)
         x->pass->factor[i] = (float)pow(2, (double)((int)(i * 7 % 33) - 16) / 8);
-    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_ROUND });
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){.quant = ADCGS_QUANT_ROUND});
     for (int g = 0; g < ADCGS_P_ETA; g++)
         for (uint32_t a = 0; a < ANCHORS; a++)
             for (int r = 0; r < adcgs_fmodel_rows(x->f, g); r++) {
@@ -816,7 +838,8 @@ static void test_adaptive_start(void **state)
     adcgs_fmodel *fresh;
     adcgs_error error;
     assert_int_equal(adcgs_fmodel_create(&fresh, &x->f->params, &x->f->shape, x->f->origin, x->f->voxel,
-                                         (const uint32_t(*)[3])x->f->pos, ANCHORS, 3, &error), ADCGS_OK);
+                                         (const uint32_t(*)[3])x->f->pos, ANCHORS, 3, &error),
+                     ADCGS_OK);
     memcpy(eq->p, fresh->param[ADCGS_P_E_STEPS].p, eq->n * sizeof *eq->p);
     adcgs_fmodel_free(&fresh);
     for (size_t i = m->w[m->hidden]; i < m->n; i++)
@@ -824,7 +847,7 @@ static void test_adaptive_start(void **state)
     adcgs_mlp_prepare(&x->f->mlp[ADCGS_P_E_STEPS], eq->p, 0);
     const size_t bytes = ADCGS_ROWS * (size_t)x->pass->primitives.n * sizeof(float);
     float *with = malloc(bytes);
-    const adcgs_pass_mode mode = { .quant = ADCGS_QUANT_NOISE, .deform = 1, .seed = 3 };
+    const adcgs_pass_mode mode = {.quant = ADCGS_QUANT_NOISE, .deform = 1, .seed = 3};
     adcgs_pass_forward(x->pass, x->f, 0.2f, &mode);
     memcpy(with, x->pass->prim, bytes);
     x->f->params.adaptive_steps = 0;
@@ -860,7 +883,7 @@ static void test_threads(void **state)
         adcgs_pass *pass;
         assert_int_equal(adcgs_pass_create(&pass, x->f, x->pass->cpu, round ? pool : NULL, &error), ADCGS_OK);
         clear_gradients(x->f);
-        const adcgs_pass_mode mode = { .quant = ADCGS_QUANT_NOISE, .deform = ADCGS_DEFORM_ALL, .dropout = 0.2f, .seed = 99 };
+        const adcgs_pass_mode mode = {.quant = ADCGS_QUANT_NOISE, .deform = ADCGS_DEFORM_ALL, .dropout = 0.2f, .seed = 99};
         adcgs_pass_forward(pass, x->f, 0.7f, &mode);
         randomise(pass->grad, 16 * (size_t)pass->primitives.n, 0, 0);
         memcpy(pass->grad, pass->prim, ADCGS_ROWS * (size_t)pass->primitives.n * sizeof(float));
@@ -886,36 +909,36 @@ int main(void)
     for (int level = ADCGS_CPU_SCALAR; level <= (int)adcgs_cpu_best(); level++) {
         void *const state = (void *)(uintptr_t)level;
         const struct CMUnitTest tests[] = {
-            { "forward", test_forward, setup, teardown, state },
-            { "distortion gradients", test_distortion_gradients, setup, teardown, state },
-            { "other time", test_other_time, setup, teardown, state },
-            { "still group", test_still_group, setup, teardown, state },
-            { "rate gradients", test_rate_gradients, setup, teardown, state },
-            { "step gradients", test_step_gradients, setup, teardown, state },
-            { "adaptive rate gradients", test_adaptive_rate_gradients, setup, teardown, state },
-            { "adaptive gradients", test_adaptive_gradients, setup, teardown, state },
-            { "adaptive limits", test_adaptive_limits, setup, teardown, state },
-            { "adaptive rounding", test_adaptive_rounding, setup, teardown, state },
-            { "adaptive start", test_adaptive_start, setup, teardown, state },
-            { "neighbours", test_neighbours, setup, teardown, state },
-            { "rigid", test_rigid, setup, teardown, state },
-            { "area", test_area, NULL, NULL, state },
-            { "area with viewpoints", test_area_seen, NULL, NULL, state },
-            { "area of many", test_area_many, NULL, NULL, state },
-            { "threads", test_threads, setup, teardown, state },
+            {"forward", test_forward, setup, teardown, state},
+            {"distortion gradients", test_distortion_gradients, setup, teardown, state},
+            {"other time", test_other_time, setup, teardown, state},
+            {"still group", test_still_group, setup, teardown, state},
+            {"rate gradients", test_rate_gradients, setup, teardown, state},
+            {"step gradients", test_step_gradients, setup, teardown, state},
+            {"adaptive rate gradients", test_adaptive_rate_gradients, setup, teardown, state},
+            {"adaptive gradients", test_adaptive_gradients, setup, teardown, state},
+            {"adaptive limits", test_adaptive_limits, setup, teardown, state},
+            {"adaptive rounding", test_adaptive_rounding, setup, teardown, state},
+            {"adaptive start", test_adaptive_start, setup, teardown, state},
+            {"neighbours", test_neighbours, setup, teardown, state},
+            {"rigid", test_rigid, setup, teardown, state},
+            {"area", test_area, NULL, NULL, state},
+            {"area with viewpoints", test_area_seen, NULL, NULL, state},
+            {"area of many", test_area_many, NULL, NULL, state},
+            {"threads", test_threads, setup, teardown, state},
         };
         void *const lives = (void *)(uintptr_t)(level + WITH_SPANS);
         const struct CMUnitTest spans[] = {
-            { "forward with spans", test_forward, setup, teardown, lives },
-            { "distortion gradients with spans", test_distortion_gradients, setup, teardown, lives },
-            { "rate gradients with spans", test_rate_gradients, setup, teardown, lives },
-            { "step gradients with spans", test_step_gradients, setup, teardown, lives },
-            { "adaptive rate gradients with spans", test_adaptive_rate_gradients, setup, teardown, lives },
-            { "adaptive gradients with spans", test_adaptive_gradients, setup, teardown, lives },
-            { "rounding with spans", test_adaptive_rounding, setup, teardown, lives },
-            { "rigid with spans", test_rigid, setup, teardown, lives },
-            { "presence", test_presence, setup, teardown, lives },
-            { "threads with spans", test_threads, setup, teardown, lives },
+            {"forward with spans", test_forward, setup, teardown, lives},
+            {"distortion gradients with spans", test_distortion_gradients, setup, teardown, lives},
+            {"rate gradients with spans", test_rate_gradients, setup, teardown, lives},
+            {"step gradients with spans", test_step_gradients, setup, teardown, lives},
+            {"adaptive rate gradients with spans", test_adaptive_rate_gradients, setup, teardown, lives},
+            {"adaptive gradients with spans", test_adaptive_gradients, setup, teardown, lives},
+            {"rounding with spans", test_adaptive_rounding, setup, teardown, lives},
+            {"rigid with spans", test_rigid, setup, teardown, lives},
+            {"presence", test_presence, setup, teardown, lives},
+            {"threads with spans", test_threads, setup, teardown, lives},
         };
         failed += cmocka_run_group_tests_name("train", tests, NULL, NULL);
         failed += cmocka_run_group_tests_name("train with spans", spans, NULL, NULL);

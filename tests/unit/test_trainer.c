@@ -54,7 +54,7 @@ static double wrong_with(const adcgs_trainer *t, const adcgs_model *model, int t
 {
     const adcgs_view *view = &t->views[0].view;
     const size_t n = 3 * (size_t)view->width * (size_t)view->height;
-    float *picture[2] = { calloc(n, sizeof(float)), calloc(n, sizeof(float)) };
+    float *picture[2] = {calloc(n, sizeof(float)), calloc(n, sizeof(float))};
     double sum = 0;
     for (int i = 0; i < 2; i++) {
         adcgs_model part;
@@ -64,7 +64,8 @@ static double wrong_with(const adcgs_trainer *t, const adcgs_model *model, int t
         assert_int_equal(adcgs_splat_create(&splat, &part, t->cpu, NULL, NULL, &error), ADCGS_OK);
         assert_int_equal(adcgs_splat_at(splat, t->views[0].t, &primitives, &error), ADCGS_OK);
         assert_int_equal(adcgs_raster_forward(t->raster, &primitives, view, t->scene->background, ADCGS_SCREEN_FILTER, picture[i],
-                                              0, &error), ADCGS_OK);
+                                              0, &error),
+                         ADCGS_OK);
         adcgs_splat_free(&splat);
         adcgs_model_clear(&part, NULL);
     }
@@ -84,7 +85,7 @@ static void tiers_are_of_falling_worth(void **state)
     adcgs_trainer *t = make_trainer(&config, pool), *alone = make_trainer(&config, NULL);
     adcgs_stream stream;
     adcgs_buffer ends[2];
-    uint32_t anchors[3] = { 0 };
+    uint32_t anchors[3] = {0};
     (void)state;
     run(t, NULL, NULL);
     run(alone, NULL, NULL);
@@ -121,7 +122,7 @@ static int all_finite(const adcgs_fmodel *f)
 /** In each stage, a restored run equals the stored one to the bit. Both end in the same state as a run that never stopped. */
 static void restored_runs_go_on_in_lockstep(void **state)
 {
-    static const uint32_t stops[] = { 0, 30, 90, 140, 180, 190 };
+    static const uint32_t stops[] = {0, 30, 90, 140, 180, 190};
     const adcgs_train_config config = all_stages_config();
     adcgs_trainer *through = make_trainer(&config, pool), *stopping = make_trainer(&config, NULL);
     adcgs_buffer end, middle, again;
@@ -304,7 +305,7 @@ static int count_anchors(void *user, const adcgs_train_report *r)
 static void densification_keeps_order_and_budget(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    census c = { make_trainer(&config, pool), UINT32_MAX, 0 };
+    census c = {make_trainer(&config, pool), UINT32_MAX, 0};
     const uint32_t start = c.t->f->n;
     run(c.t, count_anchors, &c);
     assert_true(c.most > start);
@@ -426,7 +427,7 @@ static void what_never_changes_is_static(void **state)
     adcgs_train_config config = all_stages_config();
     config.min_mean_opacity = 0;
     config.params.spans = 0;
-    config.static_threshold = 1e-30f; /* any motion of the networks at all */
+    config.static_threshold = 1e-30f;                 /* any motion of the networks at all */
     config.start_anchors = config.max_anchors = 1500; /* some of them in regions where nothing changes */
     adcgs_trainer *t = make_trainer(&config, pool);
     uint32_t stop = 50, changing = 0, moving = 0;
@@ -458,8 +459,8 @@ static void what_never_changes_is_static(void **state)
 
 typedef struct poison {
     adcgs_trainer *t;
-    int group;   /* of the parameter, or -1: an image */
-    int repair;  /* after the first rollback the image is whole again; otherwise each report spoils it */
+    int group;  /* of the parameter, or -1: an image */
+    int repair; /* after the first rollback the image is whole again; otherwise each report spoils it */
     int given;
     uint32_t at;
 } poison;
@@ -490,17 +491,17 @@ static int give_poison(void *user, const adcgs_train_report *r)
 
 static void no_number_is_rolled_back(void **state)
 {
-    static const int groups[] = { -1, ADCGS_P_FV, ADCGS_P_FG, ADCGS_P_COLOUR, ADCGS_P_ETA, ADCGS_P_THETA, ADCGS_P_TIME,
-                                  ADCGS_P_E_FV };
+    static const int groups[] = {-1,          ADCGS_P_FV,    ADCGS_P_FG,   ADCGS_P_COLOUR,
+                                 ADCGS_P_ETA, ADCGS_P_THETA, ADCGS_P_TIME, ADCGS_P_E_FV};
     const adcgs_train_config config = all_stages_config();
     for (size_t i = 0; i < ADCGS_COUNTOF(groups); i++) {
         adcgs_model model;
-        poison p = { .t = make_trainer(&config, pool), .group = groups[i], .repair = 1, .at = 90 };
+        poison p = {.t = make_trainer(&config, pool), .group = groups[i], .repair = 1, .at = 90};
         run(p.t, give_poison, &p);
         assert_int_equal(p.t->iteration, ITERATIONS);
         assert_int_equal(p.t->rollbacks, 1);
         assert_true(isfinite(p.t->mean_loss) && all_finite(p.t->f));
-        assert_int_equal(adcgs_quantise(&model, p.t->f, &(adcgs_quantise_options){ .cpu = p.t->cpu }, &error), ADCGS_OK);
+        assert_int_equal(adcgs_quantise(&model, p.t->f, &(adcgs_quantise_options){.cpu = p.t->cpu}, &error), ADCGS_OK);
         assert_int_equal(adcgs_model_validate(&model, &error), ADCGS_OK);
         adcgs_model_clear(&model, NULL);
         adcgs_trainer_free(&p.t);
@@ -512,7 +513,7 @@ static void no_number_is_rolled_back_late(void **state)
 {
     const adcgs_train_config config = all_stages_config();
     for (uint32_t at = 140; at < ITERATIONS; at += 20) {
-        poison p = { .t = make_trainer(&config, pool), .group = ADCGS_P_THETA, .at = at };
+        poison p = {.t = make_trainer(&config, pool), .group = ADCGS_P_THETA, .at = at};
         run(p.t, give_poison, &p);
         assert_int_equal(p.t->iteration, ITERATIONS);
         assert_true(p.t->rollbacks >= 1 && all_finite(p.t->f));
@@ -523,7 +524,7 @@ static void no_number_is_rolled_back_late(void **state)
 static void lasting_poison_ends_the_run(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    poison p = { .t = make_trainer(&config, pool), .group = -1, .at = 0 };
+    poison p = {.t = make_trainer(&config, pool), .group = -1, .at = 0};
     int stopped;
     p.at = 10;
     assert_int_equal(adcgs_trainer_run(p.t, give_poison, &p, &stopped, &error), ADCGS_ERR_DATA);
@@ -554,13 +555,13 @@ static void decoded_values_are_their_own_quantisation(void **state)
         float *mu[ADCGS_P_ANCHOR], *value[ADCGS_P_ANCHOR];
         run(t, stop_at, &stop);
         take_values(t->f, mu, value);
-        const adcgs_quantise_options with = { .cpu = t->cpu, .mu = mu, .value = value };
+        const adcgs_quantise_options with = {.cpu = t->cpu, .mu = mu, .value = value};
         assert_int_equal(adcgs_quantise(&first, t->f, &with, &error), ADCGS_OK);
         if (adcgs_model_validate(&first, &error) != ADCGS_OK)
             fail_msg("%s", error.text);
         for (int i = 0; i < ADCGS_P_ANCHOR; i++)
             memcpy(t->f->param[i].p, value[i], t->f->param[i].n * sizeof(float));
-        const adcgs_quantise_options scalar = { .cpu = ADCGS_CPU_SCALAR };
+        const adcgs_quantise_options scalar = {.cpu = ADCGS_CPU_SCALAR};
         assert_int_equal(adcgs_quantise(&second, t->f, &scalar, &error), ADCGS_OK);
         if (!adcgs_model_equal(&first, &second, &error))
             fail_msg("%s", error.text);
@@ -590,9 +591,9 @@ static void rounding_is_decoding(void **state)
     uint32_t stop = 180, adapted = 0, ties = 0;
     run(t, stop_at, &stop);
     take_values(t->f, mu, value);
-    const adcgs_quantise_options options = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor, .value = value };
+    const adcgs_quantise_options options = {.cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor, .value = value};
     assert_int_equal(adcgs_quantise(&model, t->f, &options, &error), ADCGS_OK);
-    adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_ROUND });
+    adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){.quant = ADCGS_QUANT_ROUND});
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
         for (uint32_t a = 0; a < t->f->n; a++)
             for (int r = 0; r < adcgs_fmodel_rows(t->f, i); r++) {
@@ -648,7 +649,7 @@ static void estimated_bits_are_written_bytes(void **state)
     adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_stream stream;
     adcgs_buffer bytes;
-    double estimate[ADCGS_LAYERS] = { 0 };
+    double estimate[ADCGS_LAYERS] = {0};
     int large = 0;
     run(t, NULL, NULL);
     adcgs_buffer_init(&bytes);
@@ -709,7 +710,7 @@ static void check_reach(const adcgs_trainer *t, int network)
  */
 static void rate_reaches_every_weight(void **state)
 {
-    static const uint32_t stops[] = { 120, 180 };
+    static const uint32_t stops[] = {120, 180};
     adcgs_train_config config = all_stages_config();
     config.without_weight_steps = 1; /* coarser lattices, or a price of weights, may leave nothing of a unit */
     config.network_rate = 0;
@@ -718,8 +719,9 @@ static void rate_reaches_every_weight(void **state)
         adcgs_fmodel *f = t->f;
         uint32_t stop = stops[s];
         run(t, stop_at, &stop);
-        const adcgs_pass_mode mode = { .quant = t->rounding ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NOISE, .deform = ADCGS_DEFORM_ALL,
-                                       .seed = 5 };
+        const adcgs_pass_mode mode = {.quant = t->rounding ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NOISE,
+                                      .deform = ADCGS_DEFORM_ALL,
+                                      .seed = 5};
         assert_int_equal(t->rounding, s);
         for (int i = 0; i < ADCGS_P_COUNT; i++)
             memset(f->param[i].g, 0, f->param[i].n * sizeof(float));
@@ -742,7 +744,7 @@ static void rate_reaches_every_weight(void **state)
 /** The first view's image of the current model, 32 x 32. */
 static void draw(adcgs_trainer *t, float image[3 * 32 * 32])
 {
-    adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .deform = 1 });
+    adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){.deform = 1});
     if (adcgs_raster_forward(t->raster, &t->pass->primitives, &t->views[0].view, scene->background, 0.3f, image, 0, &error))
         fail_msg("%s", error.text);
 }
@@ -757,7 +759,7 @@ static void check_picture(adcgs_trainer *t)
     adcgs_primitives primitives;
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         value[i] = t->f->param[i].p;
-    const adcgs_quantise_options options = { .cpu = t->cpu, .value = value };
+    const adcgs_quantise_options options = {.cpu = t->cpu, .value = value};
     assert_int_equal(adcgs_quantise(&model, t->f, &options, &error), ADCGS_OK);
     assert_int_equal(adcgs_splat_create(&splat, &model, t->cpu, NULL, NULL, &error), ADCGS_OK);
     assert_int_equal(adcgs_splat_at(splat, 0.5f, &primitives, &error), ADCGS_OK);
@@ -832,7 +834,7 @@ static void crops_are_parts_of_pictures(void **state)
     double square = 0;
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
     adcgs_trainer_prepare_networks(t);
-    adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .deform = 1 });
+    adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){.deform = 1});
     assert_int_equal(adcgs_view_render(t, &t->views[0].view, 0, whole, 0, &error), ADCGS_OK);
     adcgs_view crop = t->views[0].view;
     assert_true(crop.width == SIDE && crop.height == SIDE);
@@ -862,7 +864,7 @@ static double loss_of_quantisation(adcgs_trainer *t, adcgs_model *model)
     draw(t, before);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         value[i] = t->f->param[i].p;
-    const adcgs_quantise_options options = { .cpu = t->cpu, .value = value };
+    const adcgs_quantise_options options = {.cpu = t->cpu, .value = value};
     assert_int_equal(adcgs_quantise(model, t->f, &options, &error), ADCGS_OK);
     draw(t, after);
     return adcgs_psnr(before, after, ADCGS_COUNTOF(before));
@@ -957,12 +959,12 @@ static void averages_are_means(void **state)
     adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_fmodel *f = t->f;
     adcgs_param *varied = &f->param[ADCGS_P_OMEGA], *same = &f->param[ADCGS_P_THETA];
-    adcgs_weight_average average = { .n = 0 };
+    adcgs_weight_average average = {.n = 0};
     const float begin = varied->p[0], kept = same->p[1];
     adcgs_weight_average_take(&average, f); /* the average of no states changes nothing */
     assert_true(varied->p[0] == begin);
     for (int i = 0; i < 3; i++) {
-        varied->p[0] = (const float[]){ 1, 2, 6 }[i];
+        varied->p[0] = (const float[]){1, 2, 6}[i];
         assert_int_equal(adcgs_weight_average_add(&average, f, &error), ADCGS_OK);
     }
     adcgs_weight_average_take(&average, f);
@@ -1052,13 +1054,13 @@ static void black_levels_are_found(void **state)
     free(views);
     assert_int_equal(t->exposure.n, 3);
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
-    const float black[3] = { 10, 2, 16 };
+    const float black[3] = {10, 2, 16};
     darken(t, black, 0.5f);
     assert_int_equal(adcgs_black_levels(t, &error), ADCGS_OK);
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 3; c++)
             assert_float_equal(t->exposure.cameras[i].black[c], (black[i] - 10) / 255, 0.3 / 255);
-    const float taken[3] = { 0.5f, 0.25f, 0.125f };
+    const float taken[3] = {0.5f, 0.25f, 0.125f};
     float even[3];
     adcgs_exposure_even(&t->exposure, 1, taken, even, 1); /* the second view is the second camera's */
     for (int c = 0; c < 3; c++)
@@ -1068,7 +1070,7 @@ static void black_levels_are_found(void **state)
     assert_int_equal(adcgs_black_levels(t, &error), ADCGS_OK);
     for (int i = 0; i < 3; i++)
         assert_true(t->exposure.cameras[i].black[0] == 0);
-    darken(t, (const float[]){ 10, 2, 40 }, 0.5f);
+    darken(t, (const float[]){10, 2, 40}, 0.5f);
     assert_int_equal(adcgs_black_levels(t, &error), ADCGS_OK);
     assert_true(t->exposure.cameras[1].black[2] == 0);
     adcgs_trainer_free(&t);
@@ -1088,8 +1090,8 @@ static void follow_picture(adcgs_exposure *exposure, uint32_t view, const float 
  */
 static uint32_t follow_cameras(const float *gain, uint32_t n_views, int still, float even[][3 * PLANE], const float *drawn)
 {
-    adcgs_scene_view views[CAMERAS * PICTURES] = { { .time = 0 } };
-    adcgs_exposure exposure = { .n = 0 };
+    adcgs_scene_view views[CAMERAS * PICTURES] = {{.time = 0}};
+    adcgs_exposure exposure = {.n = 0};
     float taken[3 * PLANE];
     for (uint32_t i = 0; i < n_views; i++)
         views[i].camera.cam_to_world[3] = i % CAMERAS;
@@ -1114,14 +1116,14 @@ static void cameras_are_evened_out(void **state)
     for (int j = 0; j < 3 * PLANE; j++)
         drawn[j] = 0.1f + (float)(j * 29 % 101) / 250;
     /* Gains of mean 1 are found to within 3 %, for any images. */
-    assert_int_equal(follow_cameras((const float[]){ 0.5f, 1, 2 }, CAMERAS * PICTURES, 0, even, drawn), CAMERAS);
+    assert_int_equal(follow_cameras((const float[]){0.5f, 1, 2}, CAMERAS * PICTURES, 0, even, drawn), CAMERAS);
     for (int i = 0; i < CAMERAS * PICTURES; i++) {
         const double left = exp(0.03 * (i % CAMERAS - 1));
         for (int j = 0; j < 3 * PLANE; j++)
             assert_float_equal(even[i][j], left * (double)drawn[j], 1e-5);
     }
     /* Images of cameras that agree stay unchanged to the bit. */
-    const float near[] = { 0.99f, 1, 1.01f };
+    const float near[] = {0.99f, 1, 1.01f};
     assert_int_equal(follow_cameras(near, CAMERAS * PICTURES, 0, even, drawn), CAMERAS);
     for (int i = 0; i < CAMERAS * PICTURES; i++)
         for (int j = 0; j < 3 * PLANE; j++)
@@ -1129,11 +1131,11 @@ static void cameras_are_evened_out(void **state)
     /* Too few images per camera give no estimate. */
     assert_int_equal(follow_cameras(near, CAMERAS * 3, 0, even, drawn), 0);
     /* In a static scene one image per camera is enough, as soon as every camera has one. */
-    assert_int_equal(follow_cameras((const float[]){ 0.5f, 1, 2 }, CAMERAS, 1, even, drawn), CAMERAS);
+    assert_int_equal(follow_cameras((const float[]){0.5f, 1, 2}, CAMERAS, 1, even, drawn), CAMERAS);
     for (int i = 0; i < CAMERAS; i++)
         assert_float_equal(even[i][7], exp(0.03 * (i % CAMERAS - 1)) * (double)drawn[7], 1e-5);
-    adcgs_exposure exposure = { .n = 0 };
-    adcgs_scene_view views[2] = { { .time = 0 } };
+    adcgs_exposure exposure = {.n = 0};
+    adcgs_scene_view views[2] = {{.time = 0}};
     float bright[3 * PLANE];
     views[1].camera.cam_to_world[3] = 1;
     for (int j = 0; j < 3 * PLANE; j++)
@@ -1151,9 +1153,9 @@ static void cameras_are_evened_out(void **state)
 /** No gain leaves the range of the images' brightness, for any model. */
 static void gains_are_bounded_by_images(void **state)
 {
-    adcgs_scene_view views[CAMERAS] = { { .time = 0 } };
-    adcgs_exposure exposure = { .n = 0 };
-    double brightness[CAMERAS] = { 0.2, 0.25, 0.2 };
+    adcgs_scene_view views[CAMERAS] = {{.time = 0}};
+    adcgs_exposure exposure = {.n = 0};
+    double brightness[CAMERAS] = {0.2, 0.25, 0.2};
     float drawn[3 * PLANE], taken[3 * PLANE], even[3 * PLANE];
     for (int i = 0; i < CAMERAS; i++)
         views[i].camera.cam_to_world[3] = i;
@@ -1174,15 +1176,15 @@ static void gains_are_bounded_by_images(void **state)
 /** An overexposed pixel is a lower bound of the mean camera's value, except where it is the background of an image with alpha. */
 static void burnt_pixels_are_lower_bounds(void **state)
 {
-    adcgs_scene_view views[2] = { { .time = 0 } };
-    adcgs_exposure exposure = { .n = 0 };
+    adcgs_scene_view views[2] = {{.time = 0}};
+    adcgs_exposure exposure = {.n = 0};
     float target[3 * PLANE], drawn[3 * PLANE];
-    const float white[3] = { 1, 1, 1 };
+    const float white[3] = {1, 1, 1};
     views[1].camera.cam_to_world[3] = 1;
     assert_int_equal(adcgs_exposure_create(&exposure, views, 2, 1, &error), ADCGS_OK);
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 3; c++)
-            exposure.cameras[i] = (adcgs_exposure_camera){ .square = { 1, 1, 1 }, .gain = { i ? 1 : 2, i ? 1 : 2, i ? 1 : 2 } };
+            exposure.cameras[i] = (adcgs_exposure_camera){.square = {1, 1, 1}, .gain = {i ? 1 : 2, i ? 1 : 2, i ? 1 : 2}};
     for (int j = 0; j < 3 * PLANE; j++) {
         target[j] = j % PLANE == 0 ? 1 : j % PLANE == 1 ? 0.5f : j == 2 ? 1 : 0.25f; /* white, grey, and overexposed red */
         drawn[j] = 1.5f;
@@ -1220,11 +1222,11 @@ static void backgrounds_have_no_gain(void **state)
         views[i].camera.cam_to_world[3] = i % 2;
     assert_int_equal(adcgs_exposure_create(&t->exposure, views, t->n_views, 0, &error), ADCGS_OK);
     free(views);
-    t->exposure.cameras[0] = (adcgs_exposure_camera){ .square = { 1, 1, 1 }, .gain = { 2, 2, 2 } };
-    t->exposure.cameras[1] = (adcgs_exposure_camera){ .square = { 1, 1, 1 }, .gain = { 1, 1, 1 } };
+    t->exposure.cameras[0] = (adcgs_exposure_camera){.square = {1, 1, 1}, .gain = {2, 2, 2}};
+    t->exposure.cameras[1] = (adcgs_exposure_camera){.square = {1, 1, 1}, .gain = {1, 1, 1}};
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
     memset(t->f->keep, 0, (size_t)t->f->groups * ADCGS_LANES * t->f->params.k * sizeof *t->f->keep);
-    adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE });
+    adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_NONE});
     for (uint32_t i = 0; i < 2; i++) {
         const size_t values = 3 * (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
         for (size_t j = 0; j < values; j++)
@@ -1248,7 +1250,7 @@ static void moments_shared_by_views_change_settings(void **state)
     adcgs_scene alone = *scene;
     adcgs_train_config config = small_config();
     const float rigid = config.rigidity_weight, from = config.scale_reg_start, square = config.l2_share;
-    const adcgs_scene *alone_and_shared[] = { &alone, scene };
+    const adcgs_scene *alone_and_shared[] = {&alone, scene};
     assert_true(rigid > 0 && from > 0 && square > 0.5f);
     alone.n_times = alone.n_views[ADCGS_SPLIT_TRAIN];
     for (int by_hand = 0; by_hand < 2; by_hand++)
@@ -1270,7 +1272,7 @@ static void few_cameras_make_time_smooth(void **state)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
     adcgs_scene alone = *scene, few = *scene;
-    const adcgs_scene *scenes[] = { scene, &alone, &few };
+    const adcgs_scene *scenes[] = {scene, &alone, &few};
     adcgs_train_config config = small_config();
     adcgs_scene_view *views = malloc(n * sizeof *views);
     assert_true(views && n >= 2 * scene->n_times);
@@ -1286,10 +1288,10 @@ static void few_cameras_make_time_smooth(void **state)
                 assert_int_equal(adcgs_train_set(&config, i ? "smooth_time=0" : "smooth_time=1", &error), ADCGS_OK);
             assert_int_equal(adcgs_trainer_create(&t, scenes[i], &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
             assert_int_equal(t->f->params.smooth_time, by_hand ? !i : i > 0);
-            const adcgs_quantise_options how = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor };
+            const adcgs_quantise_options how = {.cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor};
             adcgs_model model;
             t->f->is_part = 1; /* keeps motion in the stream even if nothing moves */
-            adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_ROUND });
+            adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){.quant = ADCGS_QUANT_ROUND});
             assert_int_equal(adcgs_quantise(&model, t->f, &how, &error), ADCGS_OK);
             assert_int_equal(model.params.smooth_time, t->f->params.smooth_time);
             adcgs_model_clear(&model, NULL);
@@ -1310,7 +1312,7 @@ static void few_cameras_make_time_smooth(void **state)
 static void rates_follow_their_kind(void **state)
 {
     adcgs_train_config config = small_config();
-    static const int groups[] = { ADCGS_P_COLOUR, ADCGS_P_THETA, ADCGS_P_TIME, ADCGS_P_E_FV };
+    static const int groups[] = {ADCGS_P_COLOUR, ADCGS_P_THETA, ADCGS_P_TIME, ADCGS_P_E_FV};
     adcgs_trainer *plain = make_trainer(&config, NULL), *told;
     const adcgs_status status =
         adcgs_train_set(&config, "lr_scale_anchors=2,lr_scale_prediction=3,lr_scale_motion=5,lr_scale_entropy=7", &error);
@@ -1318,7 +1320,7 @@ static void rates_follow_their_kind(void **state)
     told = make_trainer(&config, NULL);
     for (int i = 0; i < 4; i++) {
         const adcgs_param *p = &plain->f->param[groups[i]], *q = &told->f->param[groups[i]];
-        const float times = (const float[]){ 2, 3, 5, 7 }[i];
+        const float times = (const float[]){2, 3, 5, 7}[i];
         assert_true(p->lr0 > p->lr1 && p->lr1 > 0);
         assert_float_equal(q->lr0, times * p->lr0, 1e-6);
         assert_float_equal(q->lr1, times * p->lr1, 1e-6);
@@ -1330,7 +1332,7 @@ static void rates_follow_their_kind(void **state)
 /** Learning rates are constant until lr_decay_start, then fall by equal factors in equal times. */
 static void rates_stay_then_fall(void **state)
 {
-    adcgs_train_config c = { .lr_decay_start = 0.5f };
+    adcgs_train_config c = {.lr_decay_start = 0.5f};
     for (int i = 0; i <= 2; i++)
         assert_float_equal(adcgs_train_rate(&c, 8, 2, 0.25 * i), 8, 0);
     assert_float_equal(adcgs_train_rate(&c, 8, 2, 0.75), 4, 1e-6);
@@ -1350,13 +1352,13 @@ static double true_cost(int divide, double overhead)
 /** The estimate of the remaining time is never negative, never rises by much, and is near the truth from the start on. */
 static void time_left_follows_the_schedule(void **state)
 {
-    static const double overheads[] = { 0.05, 0.2, 0.6, 1 };
-    static const float halves[][2] = { { 0.25f, 0.7f }, { 0, 0 }, { 0.3f, 0.3f }, { 0, 0.5f }, { 1, 1 } };
+    static const double overheads[] = {0.05, 0.2, 0.6, 1};
+    static const float halves[][2] = {{0.25f, 0.7f}, {0, 0}, {0.3f, 0.3f}, {0, 0.5f}, {1, 1}};
     enum { N = 4000 };
     for (size_t o = 0; o < ADCGS_COUNTOF(overheads); o++)
         for (size_t h = 0; h < ADCGS_COUNTOF(halves); h++) {
             adcgs_train_config c = small_config();
-            adcgs_time_left left = { .load = 0 };
+            adcgs_time_left left = {.load = 0};
             c.iterations = N;
             c.quarter_size_until = halves[h][0];
             c.half_size_until = halves[h][1];
@@ -1380,7 +1382,7 @@ static void time_left_follows_the_schedule(void **state)
             /* The time limit ends the run, with or without an estimate. After its end the remaining time is 0, not negative. */
             c.time_limit = 7;
             assert_true(adcgs_time_left_of(&left, &c, 0, 6.5) <= 0.5 && adcgs_time_left_of(&left, &c, 0, 99) == 0);
-            left = (adcgs_time_left){ .load = 0 };
+            left = (adcgs_time_left){.load = 0};
             assert_true(adcgs_time_left_of(&left, &c, 0, 3) == 4);
             assert_true(adcgs_time_left_of(&left, &c, N, 3) == 0);
         }
@@ -1390,7 +1392,7 @@ static void time_left_follows_the_schedule(void **state)
 static void time_left_knows_loading(void **state)
 {
     adcgs_train_config c = small_config();
-    adcgs_time_left left = { .cost = { 1, 1, 1 }, .load = 100 };
+    adcgs_time_left left = {.cost = {1, 1, 1}, .load = 100};
     c.iterations = 10;
     c.quarter_size_until = 0.2f;
     c.half_size_until = 0.5f;
@@ -1507,14 +1509,13 @@ static void masked_pixels_have_no_part(void **state)
 /** Every view shows the background and one dot: at the projection of x, or scattered, elsewhere in each view. */
 static void show_dot(adcgs_trainer *t, const float x[3], int scattered)
 {
-    static const float colour[3] = { 0.9f, 0.6f, 0.3f };
+    static const float colour[3] = {0.9f, 0.6f, 0.3f};
     for (uint32_t i = 0; i < t->n_views; i++) {
         const adcgs_view *v = &t->views[i].view;
         const int w = v->width, h = v->height;
         float p[3];
         for (int a = 0; a < 3; a++)
-            p[a] = v->rotation[3 * a] * x[0] + v->rotation[3 * a + 1] * x[1] + v->rotation[3 * a + 2] * x[2] +
-                   v->translation[a];
+            p[a] = v->rotation[3 * a] * x[0] + v->rotation[3 * a + 1] * x[1] + v->rotation[3 * a + 2] * x[2] + v->translation[a];
         const int u = scattered ? (int)(i * 7 % 19) + 6 : (int)(v->fx * p[0] / p[2] + v->cx);
         const int y = scattered ? (int)(i * 5 % 17) + 7 : (int)(v->fy * p[1] / p[2] + v->cy);
         assert_true(p[2] > 0 && u >= 1 && y >= 1 && u < w - 1 && y < h - 1);
@@ -1532,7 +1533,7 @@ static void missing_things_are_found(void **state)
 {
     enum { MOST = 64 };
     const adcgs_train_config config = all_stages_config();
-    const float x[3] = { 0.1f, -0.05f, 0.12f };
+    const float x[3] = {0.1f, -0.05f, 0.12f};
     adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_residual places[MOST];
     uint32_t n;
@@ -1579,8 +1580,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(restored_runs_go_on_in_lockstep),
-        cmocka_unit_test(checkpoints_are_checked), cmocka_unit_test(checkpoints_name_what_differs),
-        cmocka_unit_test(bad_configurations_make_no_trainer), cmocka_unit_test(checkpoints_know_their_scene),
+        cmocka_unit_test(checkpoints_are_checked),
+        cmocka_unit_test(checkpoints_name_what_differs),
+        cmocka_unit_test(bad_configurations_make_no_trainer),
+        cmocka_unit_test(checkpoints_know_their_scene),
         cmocka_unit_test(densification_keeps_order_and_budget),
         cmocka_unit_test(densification_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),
@@ -1599,14 +1602,19 @@ int main(void)
         cmocka_unit_test(uncompressed_models_lose_nothing),
         cmocka_unit_test(windows_grow_outwards),
         cmocka_unit_test(averages_are_means),
-        cmocka_unit_test(black_levels_are_found), cmocka_unit_test(cameras_are_evened_out),
-        cmocka_unit_test(gains_are_bounded_by_images), cmocka_unit_test(burnt_pixels_are_lower_bounds),
+        cmocka_unit_test(black_levels_are_found),
+        cmocka_unit_test(cameras_are_evened_out),
+        cmocka_unit_test(gains_are_bounded_by_images),
+        cmocka_unit_test(burnt_pixels_are_lower_bounds),
         cmocka_unit_test(backgrounds_have_no_gain),
         cmocka_unit_test(lambda_follows_contrast),
-        cmocka_unit_test(moments_shared_by_views_change_settings), cmocka_unit_test(few_cameras_make_time_smooth),
-        cmocka_unit_test(crops_are_parts_of_pictures), cmocka_unit_test(rates_stay_then_fall),
+        cmocka_unit_test(moments_shared_by_views_change_settings),
+        cmocka_unit_test(few_cameras_make_time_smooth),
+        cmocka_unit_test(crops_are_parts_of_pictures),
+        cmocka_unit_test(rates_stay_then_fall),
         cmocka_unit_test(rates_follow_their_kind),
-        cmocka_unit_test(time_left_follows_the_schedule), cmocka_unit_test(time_left_knows_loading),
+        cmocka_unit_test(time_left_follows_the_schedule),
+        cmocka_unit_test(time_left_knows_loading),
         cmocka_unit_test(tiers_are_of_falling_worth),
         cmocka_unit_test(time_limits_count_what_was_before),
         cmocka_unit_test(masked_pixels_have_no_part),

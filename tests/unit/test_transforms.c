@@ -252,9 +252,12 @@ static void test_paths(void **state)
 {
     put_images("images", 9, RIG_WIDTH, RIG_HEIGHT);
     put_images("masks", 9, RIG_WIDTH, RIG_HEIGHT);
-    static const char *const good[] = {"images\\\\%d.ppm", ".\\\\images\\\\%d.ppm",
-                                       "C:\\\\Users\\\\me\\\\scan\\\\images\\\\%d.ppm", "D:/scan/images/%d.ppm",
-                                       "/home/me/scan/images/%d.ppm", "/home/me/%d/../images/%d"};
+    static const char *const good[] = {"images\\\\%d.ppm",
+                                       ".\\\\images\\\\%d.ppm",
+                                       "C:\\\\Users\\\\me\\\\scan\\\\images\\\\%d.ppm",
+                                       "D:/scan/images/%d.ppm",
+                                       "/home/me/scan/images/%d.ppm",
+                                       "/home/me/%d/../images/%d"};
     for (size_t i = 0; i < ADCGS_COUNTOF(good); i++) {
         char frame[200];
         snprintf(frame, sizeof frame, "\"file_path\":\"%s\"%s", good[i],
@@ -275,8 +278,8 @@ static void test_paths(void **state)
 /** Names in another letter case or with another extension find their image, if only one file matches. */
 static void test_likeness(void **state)
 {
-    static const char *const good[] = {"images/%d.PPM", "./Images/%d.ppm", "IMAGES\\\\%d.Ppm", "images/%d.jpg", "images/./%d.ppm",
-                                       "Images/%d"};
+    static const char *const good[] = {"images/%d.PPM", "./Images/%d.ppm", "IMAGES\\\\%d.Ppm",
+                                       "images/%d.jpg", "images/./%d.ppm", "Images/%d"};
     put_images("images", 9, RIG_WIDTH, RIG_HEIGHT);
     for (size_t i = 0; i < ADCGS_COUNTOF(good); i++) {
         char frame[100];

@@ -15,12 +15,17 @@ static adcgs_scene_view many[MANY];
 static adcgs_scene scene_of(uint32_t n, uint32_t cameras)
 {
     for (uint32_t i = 0; i < n; i++) {
-        many[i] = (adcgs_scene_view){ .time = i / cameras };
-        many[i].camera = (adcgs_camera){ .width = 64, .height = 64, .fx = 60, .fy = 60, .cx = 32, .cy = 32, .near_plane = 0.1,
-                                         .cam_to_world = { 1, 0, 0, i % cameras, 0, 1, 0, 0, 0, 0, 1, 0 } };
+        many[i] = (adcgs_scene_view){.time = i / cameras};
+        many[i].camera = (adcgs_camera){.width = 64,
+                                        .height = 64,
+                                        .fx = 60,
+                                        .fy = 60,
+                                        .cx = 32,
+                                        .cy = 32,
+                                        .near_plane = 0.1,
+                                        .cam_to_world = {1, 0, 0, i % cameras, 0, 1, 0, 0, 0, 0, 1, 0}};
     }
-    return (adcgs_scene){ .views = { many }, .n_views = { n }, .duration = (n - 1) / cameras,
-                          .n_times = (n + cameras - 1) / cameras };
+    return (adcgs_scene){.views = {many}, .n_views = {n}, .duration = (n - 1) / cameras, .n_times = (n + cameras - 1) / cameras};
 }
 
 /** Each view is trained on, or judges, or neither if too many would judge; none does both. */
@@ -39,7 +44,7 @@ static void check_split(const adcgs_scene *s, uint32_t n, uint32_t trained, uint
 
 static void views_are_held_back(void **state)
 {
-    adcgs_trial_scene t = { .scene = { .n_times = 0 } };
+    adcgs_trial_scene t = {.scene = {.n_times = 0}};
     adcgs_scene s = scene_of(40, 40); /* one image per camera: one in eight */
     assert_int_equal(adcgs_trial_scene_make(&t, &s, &error), ADCGS_OK);
     check_split(&t.scene, 40, 35, 5);
@@ -65,7 +70,7 @@ static void views_are_held_back(void **state)
 /** A long scene gives an interval about its middle, whose time begins at 0; a large static one is thinned. */
 static void long_scenes_give_a_stretch(void **state)
 {
-    adcgs_trial_scene t = { .scene = { .n_times = 0 } };
+    adcgs_trial_scene t = {.scene = {.n_times = 0}};
     adcgs_scene s = scene_of(MANY, 6);
     assert_int_equal(adcgs_trial_scene_make(&t, &s, &error), ADCGS_OK);
     assert_true(t.scene.n_views[ADCGS_SPLIT_TRAIN] > ADCGS_TRIAL_VIEWS / 2);
@@ -117,7 +122,7 @@ static void losing_mechanisms_are_dropped(void **state)
     assert_int_equal(adcgs_pool_create(&alone, 1, &error), ADCGS_OK);
     for (int i = 0; i < 2; i++) {
         adcgs_train_config c = config;
-        const adcgs_trials_options options = { .cpu = adcgs_cpu_best(), .pool = i ? alone : pool };
+        const adcgs_trials_options options = {.cpu = adcgs_cpu_best(), .pool = i ? alone : pool};
         if (adcgs_trials_run(&trials, &c, scene, &options, &error) != ADCGS_OK)
             fail_msg("%s", error.text);
         adcgs_trials_format(&trials, texts[i]);
@@ -138,7 +143,7 @@ static void losing_mechanisms_are_dropped(void **state)
 /** A trial that diverges counts 0 dB, and is no failure of the run; where all diverge, nothing is dropped. */
 static void diverging_trials_count_nothing(void **state)
 {
-    const adcgs_trials_options options = { .cpu = adcgs_cpu_best(), .pool = pool };
+    const adcgs_trials_options options = {.cpu = adcgs_cpu_best(), .pool = pool};
     adcgs_train_config config = small_config();
     adcgs_trials trials;
     config.trial_share = 1;
@@ -155,7 +160,7 @@ static void trials_can_be_stopped(void **state)
 {
     adcgs_train_config config = small_config();
     uint32_t calls = 0;
-    const adcgs_trials_options options = { .cpu = adcgs_cpu_best(), .pool = pool, .progress = stop_at_third, .user = &calls };
+    const adcgs_trials_options options = {.cpu = adcgs_cpu_best(), .pool = pool, .progress = stop_at_third, .user = &calls};
     adcgs_trials trials;
     config.trial_share = 1;
     config.iterations = 100;
@@ -167,7 +172,7 @@ static void trials_can_be_stopped(void **state)
 static void short_runs_have_no_trials(void **state)
 {
     adcgs_train_config config = small_config();
-    const adcgs_trials_options options = { .cpu = adcgs_cpu_best(), .pool = pool };
+    const adcgs_trials_options options = {.cpu = adcgs_cpu_best(), .pool = pool};
     char text[ADCGS_TRIALS_TEXT];
     adcgs_trials trials;
     assert_true(config.trial_share * (float)config.iterations < 100);
@@ -214,10 +219,13 @@ static void resumed_runs_adopt_verdicts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(views_are_held_back), cmocka_unit_test(long_scenes_give_a_stretch),
-        cmocka_unit_test(losing_mechanisms_are_dropped), cmocka_unit_test(trials_can_be_stopped),
+        cmocka_unit_test(views_are_held_back),
+        cmocka_unit_test(long_scenes_give_a_stretch),
+        cmocka_unit_test(losing_mechanisms_are_dropped),
+        cmocka_unit_test(trials_can_be_stopped),
         cmocka_unit_test(diverging_trials_count_nothing),
-        cmocka_unit_test(short_runs_have_no_trials), cmocka_unit_test(resumed_runs_adopt_verdicts),
+        cmocka_unit_test(short_runs_have_no_trials),
+        cmocka_unit_test(resumed_runs_adopt_verdicts),
     };
     return cmocka_run_group_tests(tests, open_scene, close_scene);
 }

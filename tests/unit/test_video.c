@@ -10,10 +10,10 @@
 
 #include <math.h>
 
-#define expect_good(call)                                     \
-    do {                                                      \
-        if ((call) != ADCGS_OK)                               \
-            fail_msg("%s: \"%s\"", #call, error.text);        \
+#define expect_good(call)                              \
+    do {                                               \
+        if ((call) != ADCGS_OK)                        \
+            fail_msg("%s: \"%s\"", #call, error.text); \
     } while (0)
 
 #ifdef HAVE_FFMPEG
@@ -66,9 +66,9 @@ static void test_round_trip(void **state)
         int width, height, even;
         double rate;
         adcgs_fps exact; /* if the container keeps it */
-    } rows[] = {{"a.mp4", 64, 48, 1, 30, {30, 1}},   {"b.mov", 64, 48, 1, 30000 / 1001.0, {30000, 1001}},
-                {"c.mkv", 64, 48, 1, 24, {24, 1}},   {"d.avi", 64, 48, 1, 12.5, {25, 2}},
-                {"e.webm", 64, 48, 0, 25, {25, 1}},  {"f.mp4", 65, 47, 1, 30, {30, 1}},
+    } rows[] = {{"a.mp4", 64, 48, 1, 30, {30, 1}},  {"b.mov", 64, 48, 1, 30000 / 1001.0, {30000, 1001}},
+                {"c.mkv", 64, 48, 1, 24, {24, 1}},  {"d.avi", 64, 48, 1, 12.5, {25, 2}},
+                {"e.webm", 64, 48, 0, 25, {25, 1}}, {"f.mp4", 65, 47, 1, 30, {30, 1}},
                 {"g.webm", 65, 47, 0, 30, {30, 1}}};
     for (size_t i = 0; i < ADCGS_COUNTOF(rows); i++) {
         const int w = rows[i].width, h = rows[i].height;
@@ -165,8 +165,8 @@ static void test_no_video(void **state)
     write_clip("good.mp4", 64, 48, 3, 30);
     const int n = snprintf(list, sizeof list, "ffconcat version 1.0\nfile %s\n", in("good.mp4"));
     bad_file("list.mp4", list, (size_t)n);
-    const int m = snprintf(list, sizeof list, "#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\n%s\n#EXT-X-ENDLIST\n",
-                           in("good.mp4"));
+    const int m =
+        snprintf(list, sizeof list, "#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\n%s\n#EXT-X-ENDLIST\n", in("good.mp4"));
     bad_file("list.m3u8", list, (size_t)m);
     /* Declared sizes without data. */
     const char huge[] = "YUV4MPEG2 W30000 H30000 F30:1 Ip A1:1 C420\nFRAME\nabc";
@@ -351,8 +351,10 @@ static adcgs_clips *make_views(void)
     }
     free(data);
     for (int i = 0; i < VIDEOS * FRAMES; i++)
-        views[i] = (adcgs_scene_view){
-            .path = paths[i % VIDEOS], .is_video = 1, .frame = i / VIDEOS, .camera = {.width = 32, .height = 32}};
+        views[i] = (adcgs_scene_view){.path = paths[i % VIDEOS],
+                                      .is_video = 1,
+                                      .frame = i / VIDEOS,
+                                      .camera = {.width = 32, .height = 32}};
     expect_good(adcgs_clips_create(&clips, &error));
     return clips;
 }
@@ -437,9 +439,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_names),
 #ifdef HAVE_FFMPEG
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_any_order),
-        cmocka_unit_test(test_no_video), cmocka_unit_test(test_truncated), cmocka_unit_test(test_listed),
-        cmocka_unit_test(test_damaged), cmocka_unit_test(test_write_failures), cmocka_unit_test(test_clips),
+        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_same_bytes),     cmocka_unit_test(test_any_order),
+        cmocka_unit_test(test_no_video),   cmocka_unit_test(test_truncated),      cmocka_unit_test(test_listed),
+        cmocka_unit_test(test_damaged),    cmocka_unit_test(test_write_failures), cmocka_unit_test(test_clips),
 #else
         cmocka_unit_test(test_without),
 #endif

@@ -4,10 +4,10 @@
 
 #include "io/video.h"
 
-#define expect_good(call)                                     \
-    do {                                                      \
-        if ((call) != ADCGS_OK)                               \
-            fail_msg("%s: \"%s\"", #call, error.text);        \
+#define expect_good(call)                              \
+    do {                                               \
+        if ((call) != ADCGS_OK)                        \
+            fail_msg("%s: \"%s\"", #call, error.text); \
     } while (0)
 
 /* Suppression for LeakSanitizer: libx265 3.5 leaks a kilobyte per encoder. */
@@ -48,28 +48,36 @@ static void test_colours(void **state)
         recipe clip;
         double red, blue;
     } rows[] = {
-        {{"a.mkv", "ffv1", "", AV_PIX_FMT_YUV420P, 60, 38, 3, AVCOL_SPC_BT709, AVCOL_RANGE_MPEG, {0, 1}, 0},
-         0.2126, 0.0722},
+        {{"a.mkv", "ffv1", "", AV_PIX_FMT_YUV420P, 60, 38, 3, AVCOL_SPC_BT709, AVCOL_RANGE_MPEG, {0, 1}, 0}, 0.2126, 0.0722},
         {{"b.mkv", "ffv1", "", AV_PIX_FMT_YUV420P, 61, 39, 2, AVCOL_SPC_UNSPECIFIED, AVCOL_RANGE_UNSPECIFIED, {0, 1}, 0},
-         0.299, 0.114},
-        {{"c.mkv", "ffv1", "", AV_PIX_FMT_YUV422P, 60, 38, 2, AVCOL_SPC_SMPTE170M, AVCOL_RANGE_JPEG, {0, 1}, 0},
-         0.299, 0.114},
+         0.299,
+         0.114},
+        {{"c.mkv", "ffv1", "", AV_PIX_FMT_YUV422P, 60, 38, 2, AVCOL_SPC_SMPTE170M, AVCOL_RANGE_JPEG, {0, 1}, 0}, 0.299, 0.114},
         {{"d.mkv", "ffv1", "", AV_PIX_FMT_YUV420P10LE, 60, 38, 2, AVCOL_SPC_BT2020_NCL, AVCOL_RANGE_MPEG, {0, 1}, 0},
-         0.2627, 0.0593},
-        {{"e.mkv", "ffv1", "", AV_PIX_FMT_YUV444P12LE, 60, 38, 2, AVCOL_SPC_BT709, AVCOL_RANGE_JPEG, {0, 1}, 0},
-         0.2126, 0.0722},
+         0.2627,
+         0.0593},
+        {{"e.mkv", "ffv1", "", AV_PIX_FMT_YUV444P12LE, 60, 38, 2, AVCOL_SPC_BT709, AVCOL_RANGE_JPEG, {0, 1}, 0}, 0.2126, 0.0722},
         {{"f.mkv", "ffv1", "", AV_PIX_FMT_YUV420P, 1280, 16, 1, AVCOL_SPC_UNSPECIFIED, AVCOL_RANGE_UNSPECIFIED, {0, 1}, 0},
-         0.2126, 0.0722},
+         0.2126,
+         0.0722},
         {{"g.mkv", "libx264", "qp=0", AV_PIX_FMT_YUV420P, 60, 38, 30, AVCOL_SPC_BT709, AVCOL_RANGE_MPEG, {0, 1}, 0},
-         0.2126, 0.0722},
+         0.2126,
+         0.0722},
         {{"h.mp4", "libx264", "qp=0", AV_PIX_FMT_YUV420P10LE, 60, 38, 30, AVCOL_SPC_BT709, AVCOL_RANGE_MPEG, {0, 1}, 0},
-         0.2126, 0.0722},
+         0.2126,
+         0.0722},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(rows); i++) {
         const recipe *r = &rows[i].clip;
         const AVPixFmtDescriptor *d = av_pix_fmt_desc_get(r->format);
-        const geometry g = {r->width, r->height, 1 << d->log2_chroma_w, 1 << d->log2_chroma_h, d->comp[0].depth,
-                            r->range == AVCOL_RANGE_JPEG, rows[i].red, rows[i].blue};
+        const geometry g = {r->width,
+                            r->height,
+                            1 << d->log2_chroma_w,
+                            1 << d->log2_chroma_h,
+                            d->comp[0].depth,
+                            r->range == AVCOL_RANGE_JPEG,
+                            rows[i].red,
+                            rows[i].blue};
         adcgs_video *video;
         if (!make_clip(r)) {
             print_message("skipped: no encoder %s\n", r->encoder);
@@ -93,9 +101,9 @@ static void test_colours(void **state)
 /* RGB and grey pass unchanged. */
 static void test_rgb(void **state)
 {
-    static const recipe clips[] = {
-        {"rgb.mkv", "ffv1", "", AV_PIX_FMT_GBRP10LE, 30, 20, 2, AVCOL_SPC_RGB, AVCOL_RANGE_JPEG, {0, 1}, 0},
-        {"grey.mkv", "ffv1", "", AV_PIX_FMT_GRAY8, 30, 20, 2, AVCOL_SPC_UNSPECIFIED, AVCOL_RANGE_JPEG, {0, 1}, 0}};
+    static const recipe clips[] =
+        {{"rgb.mkv", "ffv1", "", AV_PIX_FMT_GBRP10LE, 30, 20, 2, AVCOL_SPC_RGB, AVCOL_RANGE_JPEG, {0, 1}, 0},
+         {"grey.mkv", "ffv1", "", AV_PIX_FMT_GRAY8, 30, 20, 2, AVCOL_SPC_UNSPECIFIED, AVCOL_RANGE_JPEG, {0, 1}, 0}};
     for (size_t i = 0; i < ADCGS_COUNTOF(clips); i++) {
         adcgs_video *video;
         adcgs_image image;
@@ -161,8 +169,14 @@ static void test_codecs(void **state)
         {"mjpeg.avi", "mjpeg", "strict=-1", AV_PIX_FMT_YUVJ420P, 20},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(rows); i++) {
-        const recipe clip = {.name = rows[i].name, .encoder = rows[i].encoder, .options = rows[i].options,
-                             .format = rows[i].format, .width = 64, .height = 48, .frames = rows[i].frames, .aspect = {0, 1}};
+        const recipe clip = {.name = rows[i].name,
+                             .encoder = rows[i].encoder,
+                             .options = rows[i].options,
+                             .format = rows[i].format,
+                             .width = 64,
+                             .height = 48,
+                             .frames = rows[i].frames,
+                             .aspect = {0, 1}};
         if (make_clip(&clip))
             any_order(clip.name, clip.frames);
         else

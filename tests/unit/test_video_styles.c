@@ -9,10 +9,10 @@
 #include <libavutil/pixdesc.h>
 #include <math.h>
 
-#define expect_good(call)                                     \
-    do {                                                      \
-        if ((call) != ADCGS_OK)                               \
-            fail_msg("%s: \"%s\"", #call, error.text);        \
+#define expect_good(call)                              \
+    do {                                               \
+        if ((call) != ADCGS_OK)                        \
+            fail_msg("%s: \"%s\"", #call, error.text); \
     } while (0)
 
 enum { W = 64, H = 48, N = 6 };
@@ -104,7 +104,9 @@ static double sample(const AVFrame *frame, int c, int x, int y)
 /* Lossless codecs give the frames rounded to 8 bits, through our reader. */
 static void test_lossless(void **state)
 {
-    static const struct { const char *name, *codec; } rows[] = {{"a.mkv", "ffv1"}, {"a.mov", "qtrle"}, {"b.mov", "png"}};
+    static const struct {
+        const char *name, *codec;
+    } rows[] = {{"a.mkv", "ffv1"}, {"a.mov", "qtrle"}, {"b.mov", "png"}};
     for (size_t i = 0; i < ADCGS_COUNTOF(rows); i++) {
         adcgs_video *video;
         adcgs_image image;
@@ -130,8 +132,8 @@ static void test_alpha(void **state)
         const char *name, *codec, *decoder;
         int is_rgb;
         double tolerance;
-    } rows[] = {{"a.mkv", NULL, NULL, 1, 0.0021},   {"b.mkv", "ffv1", NULL, 1, 0.0021}, {"c.mov", "qtrle", NULL, 1, 0.0021},
-                {"d.mov", NULL, NULL, 0, 0.02},     {"e.webm", NULL, "libvpx-vp9", 0, 0.04}, {"f.mov", "png", NULL, 1, 0.0021}};
+    } rows[] = {{"a.mkv", NULL, NULL, 1, 0.0021}, {"b.mkv", "ffv1", NULL, 1, 0.0021},      {"c.mov", "qtrle", NULL, 1, 0.0021},
+                {"d.mov", NULL, NULL, 0, 0.02},   {"e.webm", NULL, "libvpx-vp9", 0, 0.04}, {"f.mov", "png", NULL, 1, 0.0021}};
     for (size_t i = 0; i < ADCGS_COUNTOF(rows); i++) {
         enum AVCodecID id;
         if (write_clip(rows[i].name, &(adcgs_video_style){.codec = rows[i].codec, .has_alpha = 1}) == ADCGS_ERR_UNSUPPORTED) {

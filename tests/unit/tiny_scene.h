@@ -17,8 +17,8 @@ static adcgs_pool *pool;
 
 static int open_scene(void **state)
 {
-    const adcgs_scenes_options scene_options = { .name = "tiny", .width = 32, .height = 32, .format = "ppm" };
-    const adcgs_scene_options options = { .points_path = NULL };
+    const adcgs_scenes_options scene_options = {.name = "tiny", .width = 32, .height = 32, .format = "ppm"};
+    const adcgs_scene_options options = {.points_path = NULL};
     if (make_folder(state) != 0 || adcgs_pool_create(&pool, 3, &error) != ADCGS_OK)
         return -1;
     return adcgs_scenes_write(folder, &scene_options, NULL, NULL, NULL, &error) != ADCGS_OK ||
@@ -74,7 +74,7 @@ static inline adcgs_trainer *make_trainer(const adcgs_train_config *config, adcg
 /** The state of a run without its time. */
 static inline void store(adcgs_trainer *t, adcgs_buffer *out)
 {
-    t->elapsed = (adcgs_time){ 0, 0 };
+    t->elapsed = (adcgs_time){0, 0};
     adcgs_buffer_init(out);
     assert_int_equal(adcgs_trainer_store(t, out, &error), ADCGS_OK);
 }

@@ -63,8 +63,8 @@ static inline void set_turn(AVStream *stream)
     const int32_t quarter[9] = {0, 65536, 0, -65536, 0, 0, 0, 0, 1 << 30};
 #if LIBAVCODEC_VERSION_INT >= AV_VERSION_INT(60, 31, 0)
     AVCodecParameters *par = stream->codecpar;
-    AVPacketSideData *side = av_packet_side_data_new(&par->coded_side_data, &par->nb_coded_side_data, AV_PKT_DATA_DISPLAYMATRIX,
-                                                     sizeof quarter, 0);
+    AVPacketSideData *side =
+        av_packet_side_data_new(&par->coded_side_data, &par->nb_coded_side_data, AV_PKT_DATA_DISPLAYMATRIX, sizeof quarter, 0);
     assert_non_null(side);
     memcpy(side->data, quarter, sizeof quarter);
 #else

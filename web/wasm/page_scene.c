@@ -26,7 +26,7 @@ static struct {
     adcgs_camera *cameras;
     adcgs_camera home;
     adcgs_error error;
-    char fault[sizeof ((adcgs_error *)0)->text]; /* the first concealed fault */
+    char fault[sizeof((adcgs_error *)0)->text]; /* the first concealed fault */
     float *values;
     uint8_t *rgba;
     size_t pixels; /* room in both */

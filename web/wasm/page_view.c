@@ -60,8 +60,15 @@ void PAGE_EXPORT(view_resize)(int width, int height, double density)
 /** kind and key as in window.h. The page's time bar is not part of the image. */
 void PAGE_EXPORT(view_event)(int kind, int key, int down, int again, int button, double x, double y, double dx, double dy)
 {
-    const adcgs_event event = {.kind = (adcgs_event_kind)kind, .key = key, .down = down, .again = again, .button = button,
-                               .x = x, .y = y, .dx = dx, .dy = dy};
+    const adcgs_event event = {.kind = (adcgs_event_kind)kind,
+                               .key = key,
+                               .down = down,
+                               .again = again,
+                               .button = button,
+                               .x = x,
+                               .y = y,
+                               .dx = dx,
+                               .dy = dy};
     const int bar = page.state.bar;
     if (event.kind == ADCGS_EVENT_KEY) {
         adcgs_play_event(&page.state, &event);
@@ -126,21 +133,66 @@ void PAGE_EXPORT(view_took)(double seconds)
 
 /* ---- Queries. ---- */
 
-int PAGE_EXPORT(view_divider)(void) { return page.scale.divider; }
-int PAGE_EXPORT(view_tiers)(void) { return page.scale.tiers; }
-int PAGE_EXPORT(view_moving)(void) { return adcgs_play_moving(&page.state) || page.state.held != 0; }
-int PAGE_EXPORT(view_playing)(void) { return page.state.clock.playing; }
-int PAGE_EXPORT(view_waits)(void) { return adcgs_play_clock_waits(&page.state.clock); }
-int PAGE_EXPORT(view_loop)(void) { return page.state.clock.loop; }
-int PAGE_EXPORT(view_frame)(void) { return adcgs_play_clock_frame(&page.state.clock); }
-int PAGE_EXPORT(view_frames)(void) { return page.state.clock.frames; }
-double PAGE_EXPORT(view_time)(void) { return adcgs_play_clock_time(&page.state.clock); }
-double PAGE_EXPORT(view_factor)(void) { return adcgs_play_clock_factor(&page.state.clock); }
-int PAGE_EXPORT(view_layers)(void) { return page.state.layers; }
-int PAGE_EXPORT(view_flying)(void) { return page.state.flying; }
-int PAGE_EXPORT(view_statistics)(void) { return page.state.statistics; }
-int PAGE_EXPORT(view_bar)(void) { return page.state.bar; }
-int PAGE_EXPORT(view_help)(void) { return page.state.help; }
+int PAGE_EXPORT(view_divider)(void)
+{
+    return page.scale.divider;
+}
+int PAGE_EXPORT(view_tiers)(void)
+{
+    return page.scale.tiers;
+}
+int PAGE_EXPORT(view_moving)(void)
+{
+    return adcgs_play_moving(&page.state) || page.state.held != 0;
+}
+int PAGE_EXPORT(view_playing)(void)
+{
+    return page.state.clock.playing;
+}
+int PAGE_EXPORT(view_waits)(void)
+{
+    return adcgs_play_clock_waits(&page.state.clock);
+}
+int PAGE_EXPORT(view_loop)(void)
+{
+    return page.state.clock.loop;
+}
+int PAGE_EXPORT(view_frame)(void)
+{
+    return adcgs_play_clock_frame(&page.state.clock);
+}
+int PAGE_EXPORT(view_frames)(void)
+{
+    return page.state.clock.frames;
+}
+double PAGE_EXPORT(view_time)(void)
+{
+    return adcgs_play_clock_time(&page.state.clock);
+}
+double PAGE_EXPORT(view_factor)(void)
+{
+    return adcgs_play_clock_factor(&page.state.clock);
+}
+int PAGE_EXPORT(view_layers)(void)
+{
+    return page.state.layers;
+}
+int PAGE_EXPORT(view_flying)(void)
+{
+    return page.state.flying;
+}
+int PAGE_EXPORT(view_statistics)(void)
+{
+    return page.state.statistics;
+}
+int PAGE_EXPORT(view_bar)(void)
+{
+    return page.state.bar;
+}
+int PAGE_EXPORT(view_help)(void)
+{
+    return page.state.help;
+}
 
 /** Whether a screenshot was requested; resets the request. */
 int PAGE_EXPORT(view_shot)(void)

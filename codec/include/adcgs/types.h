@@ -111,39 +111,39 @@ typedef struct adcgs_bytes {
  * number of bytes taken so far.
  */
 typedef struct adcgs_info {
-    size_t size;            /**< bytes of this struct that the library filled; the rest is zero */
-    int version_major;      /**< of the bitstream (clause "HEAD") */
-    int version_minor;      /**< of the bitstream */
-    int profile;            /**< 0 (clause "Profiles and levels") */
-    int level;              /**< 1..3: bounds of the resources for decoding (clause "Levels") */
-    int segments;           /**< complete time segments, at least 1; those from first_segment on can be played */
-    uint32_t anchors;       /**< over all segments */
-    uint32_t gaussians;     /**< primitives that exist, over all segments */
+    size_t size;             /**< bytes of this struct that the library filled; the rest is zero */
+    int version_major;       /**< of the bitstream (clause "HEAD") */
+    int version_minor;       /**< of the bitstream */
+    int profile;             /**< 0 (clause "Profiles and levels") */
+    int level;               /**< 1..3: bounds of the resources for decoding (clause "Levels") */
+    int segments;            /**< complete time segments, at least 1; those from first_segment on can be played */
+    uint32_t anchors;        /**< over all segments */
+    uint32_t gaussians;      /**< primitives that exist, over all segments */
     uint32_t static_anchors; /**< anchors that never move, over all segments */
-    uint32_t weights;       /**< of networks and time tables, each counted once */
-    int k;                  /**< primitives per anchor at most, 1..16 */
-    int layers;             /**< layers in use: present in all segments, and requested; 1..5 */
-    int cameras;            /**< cameras stored in the stream, for adcgs_get_camera() */
-    double time_start;      /**< seconds */
-    double time_end;        /**< seconds, not before time_start */
-    double frame_rate;      /**< suggested frames per second for playing, > 0 */
-    double scene_origin[3]; /**< centre of the scene, world units: world = origin + scale * scene */
-    double scene_scale;     /**< world units in a scene unit, > 0 */
-    float background[3];    /**< RGB behind the splats, as in frames */
-    int truncated;          /**< nonzero: the stream ended early; its complete part is available */
-    char colour[32];        /**< of frames: "sRGB", "linear BT.709" or "unknown" */
-    char axes[32];          /**< of the world: "right-handed, y up", "right-handed, z up", "right-handed, y down", "unknown" */
-    char units[32];         /**< of the world: "metre" or "unknown" */
-    adcgs_bytes bytes;      /**< bytes of the stream by content */
-    int metadata;           /**< texts stored in the stream, for adcgs_get_metadata_key() */
-    int faults;             /**< number of concealed faults, if config.conceal is set */
-    int tiers;              /**< sets of anchors of the stream (clause "Tiers"): the maximum over its segments, 1..8 */
-    int tiers_present;      /**< tiers that are available in all segments */
-    double time_committed;  /**< seconds: content before it no longer changes; infinity: no more bytes will come */
-    double time_available;  /**< seconds: end of the content that can be rendered now; minus infinity: none */
-    int segments_total;     /**< total number of segments of a pushed stream; 0: its header does not give it */
-    int tiers_received;     /**< tiers of the segment being received that can be rendered; 0: none, or no such segment */
-    int first_segment;      /**< number of the first available segment: above 0 if earlier ones were freed or missed */
+    uint32_t weights;        /**< of networks and time tables, each counted once */
+    int k;                   /**< primitives per anchor at most, 1..16 */
+    int layers;              /**< layers in use: present in all segments, and requested; 1..5 */
+    int cameras;             /**< cameras stored in the stream, for adcgs_get_camera() */
+    double time_start;       /**< seconds */
+    double time_end;         /**< seconds, not before time_start */
+    double frame_rate;       /**< suggested frames per second for playing, > 0 */
+    double scene_origin[3];  /**< centre of the scene, world units: world = origin + scale * scene */
+    double scene_scale;      /**< world units in a scene unit, > 0 */
+    float background[3];     /**< RGB behind the splats, as in frames */
+    int truncated;           /**< nonzero: the stream ended early; its complete part is available */
+    char colour[32];         /**< of frames: "sRGB", "linear BT.709" or "unknown" */
+    char axes[32];           /**< of the world: "right-handed, y up", "right-handed, z up", "right-handed, y down", "unknown" */
+    char units[32];          /**< of the world: "metre" or "unknown" */
+    adcgs_bytes bytes;       /**< bytes of the stream by content */
+    int metadata;            /**< texts stored in the stream, for adcgs_get_metadata_key() */
+    int faults;              /**< number of concealed faults, if config.conceal is set */
+    int tiers;               /**< sets of anchors of the stream (clause "Tiers"): the maximum over its segments, 1..8 */
+    int tiers_present;       /**< tiers that are available in all segments */
+    double time_committed;   /**< seconds: content before it no longer changes; infinity: no more bytes will come */
+    double time_available;   /**< seconds: end of the content that can be rendered now; minus infinity: none */
+    int segments_total;      /**< total number of segments of a pushed stream; 0: its header does not give it */
+    int tiers_received;      /**< tiers of the segment being received that can be rendered; 0: none, or no such segment */
+    int first_segment;       /**< number of the first available segment: above 0 if earlier ones were freed or missed */
 } adcgs_info;
 
 /** Longest name of a camera, bytes without the zero. */
@@ -155,14 +155,14 @@ typedef struct adcgs_info {
  * its first pixel is at (0.5, 0.5).
  */
 typedef struct adcgs_camera {
-    int32_t width;           /**< pixels, 1..ADCGS_SIZE_MAX */
-    int32_t height;          /**< pixels, 1..ADCGS_SIZE_MAX */
-    double fx;               /**< focal length in pixel widths, 2^-10..2^24 */
-    double fy;               /**< focal length in pixel heights, 2^-10..2^24 */
-    double cx;               /**< principal point in pixels, within 2^20 */
-    double cy;               /**< principal point in pixels, within 2^20 */
-    double cam_to_world[12]; /**< row-major 3x4 [R|c]: R orthonormal, c the camera's centre in world units */
-    double near_plane;       /**< world units, > 0: nothing closer is rendered */
+    int32_t width;                        /**< pixels, 1..ADCGS_SIZE_MAX */
+    int32_t height;                       /**< pixels, 1..ADCGS_SIZE_MAX */
+    double fx;                            /**< focal length in pixel widths, 2^-10..2^24 */
+    double fy;                            /**< focal length in pixel heights, 2^-10..2^24 */
+    double cx;                            /**< principal point in pixels, within 2^20 */
+    double cy;                            /**< principal point in pixels, within 2^20 */
+    double cam_to_world[12];              /**< row-major 3x4 [R|c]: R orthonormal, c the camera's centre in world units */
+    double near_plane;                    /**< world units, > 0: nothing closer is rendered */
     char name[ADCGS_CAMERA_NAME_MAX + 1]; /**< UTF-8, may be empty */
 } adcgs_camera;
 

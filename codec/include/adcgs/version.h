@@ -17,7 +17,7 @@
 #define ADCGS_VERSION_PATCH 0
 
 /** A version as one number; later versions have larger ones. minor and patch: 0..999. */
-#define ADCGS_MAKE_VERSION(major, minor, patch) ((major) * 1000000U + (minor) * 1000U + (patch))
+#define ADCGS_MAKE_VERSION(major, minor, patch) (1000000U * (major) + 1000U * (minor) + (patch))
 
 /** The version of these headers, to compare with ADCGS_MAKE_VERSION() in `#if`. */
 #define ADCGS_VERSION ADCGS_MAKE_VERSION(ADCGS_VERSION_MAJOR, ADCGS_VERSION_MINOR, ADCGS_VERSION_PATCH)
