@@ -1,136 +1,18 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Predicted segments: any predicted model is decoded exactly; models that cannot be predicted are refused. */
-#include "random_model.h"
+#include "predicted_streams.h"
 #include "stream_edit.h"
 
 #include "base/cpu_detect.h"
 #include "base/thread_pool.h"
 #include "model/inter_priv.h"
 #include "model/model_priv.h"
-#include "stream/input.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
 
 #include <cmocka.h>
-
-static const adcgs_read_options plain = {.cpu = ADCGS_CPU_SCALAR};
-
-static void check(adcgs_status status, const adcgs_error *error)
-{
-    if (status != ADCGS_OK)
-        fail_msg("%s: %s", adcgs_status_name(status), error->text);
-}
-
-static adcgs_status read_stream(adcgs_stream *stream, const uint8_t *data, size_t bytes, const adcgs_read_options *options,
-                                adcgs_error *error)
-{
-    adcgs_span s = {.next = data, .left = bytes};
-    return adcgs_stream_read(stream, adcgs_span_read, &s, options, NULL, NULL, error);
-}
-
-static void write_stream(adcgs_stream *stream, adcgs_buffer *bytes)
-{
-    adcgs_error error = {ADCGS_OK, ""};
-    adcgs_buffer_init(bytes);
-    check(adcgs_stream_write(stream, bytes, &error), &error);
-}
-
-static adcgs_params some_params(uint64_t *seed)
-{
-    adcgs_params params;
-    adcgs_random_small_params(&params, 4, seed);
-    return params;
-}
-
-/** A stream of one random model, with room for more segments, which the functions below append. */
-static void make_stream(adcgs_stream *stream, const adcgs_params *params, uint32_t room, uint32_t n, uint64_t *seed)
-{
-    adcgs_error error = {ADCGS_OK, ""};
-    adcgs_stream_init(stream);
-    stream->params = *params;
-    stream->slice_log2 = ADCGS_SLICE_LOG2_MIN;
-    stream->segments = adcgs_alloc(NULL, room, sizeof *stream->segments, &error);
-    assert_non_null(stream->segments);
-    stream->n_segments = 1;
-    check(adcgs_random_model(&stream->segments[0], params, n, 4, seed, &error), &error);
-    stream->segments[0].time_end = adcgs_ticks_to_seconds(stream, 40);
-}
-
-static adcgs_model *next_segment(adcgs_stream *stream)
-{
-    adcgs_model *m = &stream->segments[stream->n_segments];
-    m->time_start = adcgs_ticks_to_seconds(stream, 40 * (int64_t)stream->n_segments);
-    m->time_end = adcgs_ticks_to_seconds(stream, 40 * ((int64_t)stream->n_segments + 1));
-    stream->n_segments++;
-    return m;
-}
-
-static void append_follower(adcgs_stream *stream, uint32_t n, uint64_t *seed)
-{
-    adcgs_error error = {ADCGS_OK, ""};
-    adcgs_model *m = &stream->segments[stream->n_segments];
-    check(adcgs_random_follower(m, m - 1, n, seed, &error), &error);
-    next_segment(stream);
-}
-
-/** Appends a segment with the anchors of the one before, without every nth one; 0: with all. */
-static adcgs_model *append_same(adcgs_stream *stream, uint32_t nth)
-{
-    adcgs_error error = {ADCGS_OK, ""};
-    adcgs_model *m = &stream->segments[stream->n_segments], *before = m - 1;
-    adcgs_inter kept = {.n = 0};
-    *m = adcgs_random_frame(before);
-    for (int role = 0; role < ADCGS_ROLES; role++)
-        if (before->net[role].present)
-            check(adcgs_net_copy(&m->net[role], &before->net[role], NULL, &error), &error);
-    check(adcgs_model_alloc(m, NULL, &error), &error);
-    check(adcgs_inter_alloc(&kept, before, NULL, &error), &error);
-    for (uint32_t i = 0; i < before->n; i++) {
-        kept.mode[i] = nth && i % nth == 0 ? ADCGS_INTER_DROPPED : ADCGS_INTER_SAME;
-        kept.n += kept.mode[i] == ADCGS_INTER_SAME;
-    }
-    check(adcgs_random_join(&kept, before, m, &error), &error);
-    adcgs_inter_clear(&kept, NULL);
-    return next_segment(stream);
-}
-
-static void check_models(const adcgs_stream *a, const adcgs_stream *b)
-{
-    adcgs_error error = {ADCGS_OK, ""};
-    assert_int_equal(a->n_segments, b->n_segments);
-    for (uint32_t i = 0; i < a->n_segments; i++) {
-        if (!adcgs_model_equal(&a->segments[i], &b->segments[i], &error))
-            fail_msg("segment %u: %s", i, error.text);
-        assert_int_equal(a->segments[i].predicted, b->segments[i].predicted);
-    }
-}
-
-/** Reads the stream back and writes it again as the same bytes. \return payload bytes of its last KEEP; anchors: its GEOM's. */
-static size_t check_round_trip(adcgs_stream *stream, uint32_t *anchors)
-{
-    adcgs_error error = {ADCGS_OK, ""};
-    adcgs_stream back;
-    adcgs_buffer bytes, again;
-    adcgs_found_chunk c;
-    size_t keep = 0;
-    write_stream(stream, &bytes);
-    check(read_stream(&back, bytes.data, bytes.size, &plain, &error), &error);
-    check_models(stream, &back);
-    write_stream(&back, &again);
-    assert_int_equal(bytes.size, again.size);
-    assert_memory_equal(bytes.data, again.data, bytes.size);
-    for (size_t pos = ADCGS_SIGNATURE_BYTES; adcgs_next_chunk(bytes.data, bytes.size, &pos, &c);) {
-        keep = c.type == ADCGS_TYPE_KEEP ? c.length : keep;
-        if (c.type == ADCGS_TYPE_GEOM && anchors)
-            *anchors = adcgs_load_le32(bytes.data + c.payload);
-    }
-    adcgs_buffer_clear(&bytes);
-    adcgs_buffer_clear(&again);
-    adcgs_stream_clear(&back, NULL);
-    return keep;
-}
 
 /** Chains of predicted segments, of any parameters. */
 /* REQ-STRM-043, REQ-STRM-044, REQ-STRM-045, REQ-STRM-048, REQ-LATN-015, REQ-LATN-016, REQ-LATN-017, REQ-LATN-018 */

@@ -1,25 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The cost that a stream can cause in a decoder. Streams of a few hundred bytes that use all of a level's limits are decoded
- * within their memory and time. One unit more of anything is refused before any allocation for it. Every allocation of the
- * decoder fails once.
+ * The cost that a stream can cause in a decoder: streams of a few hundred bytes that use all of a level's limits are decoded
+ * within their memory and time, and one unit more of anything is refused before any allocation for it.
  */
-#include "random_model.h"
+#include "zero_streams.h"
 #include "stream_edit.h"
 
 #include "base/cpu_detect.h"
-#include "model/model_priv.h"
 #include "stream/input.h"
 #include "stream/parts.h"
 
 #include <adcgs/adcgs.h>
 
-#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
-#include <stdatomic.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <time.h>
 
 #include <cmocka.h>
@@ -27,108 +22,6 @@
 /* Memory in addition to models, payloads and weights: contexts of the coders, headers of blocks, the table of networks. */
 #define SLACK ((uint64_t)1 << 20)
 #define SECONDS_MOST 2.0
-
-/* ---- Streams whose contents cost no bytes ---- */
-
-/** The parameters of a zero stream: every weight and value is 0, and anchors fill a cube. */
-typedef struct nothing {
-    adcgs_params params;
-    uint32_t segments, anchors;
-    int depth;
-    int role, layers, width; /**< hidden layers of one network, of this width; the others have none */
-    uint32_t cameras;
-    int predicted; /**< segments after the first predict all anchors from the one before */
-} nothing;
-
-static const nothing least = {.params = {.k = 1, .n_fv = 1, .chunks = 1}, .segments = 1, .anchors = 1};
-
-static void zero_net(adcgs_net *net, const adcgs_params *params, int role, int layers, uint32_t width)
-{
-    uint32_t n_in, n_out;
-    adcgs_role_shape(params, role, &n_in, &n_out);
-    *net = (adcgs_net){.present = 1, .role = (uint8_t)role, .n_layers = (uint8_t)(n_in == 0 ? 1 : layers)};
-    for (int i = 0; i < net->n_layers; i++) {
-        adcgs_layer *l = &net->layer[i];
-        const uint32_t rows = i == net->n_layers - 1 ? n_out : width;
-        l->w = (adcgs_tensor){.rows = rows, .cols = n_in, .m = adcgs_alloc(NULL, (size_t)rows * n_in, 4, NULL)};
-        l->b = (adcgs_tensor){.rows = rows, .cols = 1, .m = adcgs_alloc(NULL, rows, 4, NULL)};
-        assert_true(l->w.m && l->b.m);
-        n_in = rows;
-    }
-}
-
-/** Puts anchor i into the voxel with Morton code i. */
-static void fill_cube(adcgs_model *m)
-{
-    for (uint32_t i = 0; i < m->n; i++)
-        for (int bit = 0; bit < 10; bit++)
-            for (int axis = 0; axis < 3; axis++)
-                m->pos[3 * i + (uint32_t)axis] |= (i >> (3 * bit + 2 - axis) & 1) << bit;
-}
-
-static void make_model(adcgs_model *m, const nothing *what)
-{
-    m->params = what->params;
-    m->n = what->anchors;
-    m->depth = (uint8_t)what->depth;
-    m->voxel = 1;
-    m->layers = (uint8_t)adcgs_params_layers(&m->params);
-    assert_int_equal(adcgs_model_alloc(m, NULL, NULL), ADCGS_OK);
-    fill_cube(m);
-    for (uint32_t i = 0; i < m->n; i++)
-        m->mask[i] = (uint16_t)((1U << m->params.k) - 1);
-    for (int i = 0; i < ADCGS_NV_MAX; i++)
-        m->d_fv[i] = 1;
-    for (int i = 0; i < ADCGS_NG_MAX; i++)
-        m->d_fg[i] = 1;
-    for (int i = 0; i < ADCGS_SIGMA_MAX; i++)
-        m->d_sigma[i] = 1;
-    for (int i = 0; i < ADCGS_COLOUR_N; i++)
-        m->d_colour[i] = 1;
-    for (int role = 0; role < ADCGS_ROLES; role++)
-        if (adcgs_role_required(&m->params, role))
-            zero_net(&m->net[role], &m->params, role, role == what->role ? 1 + what->layers : 1, (uint32_t)what->width);
-}
-
-static void make_stream(adcgs_stream *stream, const nothing *what)
-{
-    adcgs_stream_init(stream);
-    stream->params = what->params;
-    stream->slice_log2 = ADCGS_SLICE_LOG2_MAX;
-    stream->segments = adcgs_alloc(NULL, what->segments, sizeof *stream->segments, NULL);
-    stream->cameras = adcgs_alloc(NULL, what->cameras, sizeof *stream->cameras, NULL);
-    assert_true(stream->segments && stream->cameras);
-    for (; stream->n_segments < what->segments; stream->n_segments++) {
-        adcgs_model *m = &stream->segments[stream->n_segments];
-        make_model(m, what);
-        m->predicted = (uint8_t)(what->predicted && stream->n_segments > 0);
-        m->time_start = m->time_end = adcgs_ticks_to_seconds(stream, stream->n_segments);
-    }
-    for (; stream->n_cameras < what->cameras; stream->n_cameras++)
-        stream->cameras[stream->n_cameras] =
-            (adcgs_camera){.width = 1, .height = 1, .fx = 1, .fy = 1, .near_plane = 1, .cam_to_world = {1}};
-}
-
-static void set_level(uint8_t *stream, size_t size, int level)
-{
-    stream[ADCGS_SIGNATURE_BYTES + ADCGS_CHUNK_HEADER_BYTES + 5] = (uint8_t)level;
-    adcgs_repair_stream(stream, size, 0);
-}
-
-/** Writes the zero stream for the level that it needs, then changes its level to 1. */
-static void make_bytes(adcgs_buffer *bytes, const nothing *what)
-{
-    adcgs_error error = {ADCGS_OK, ""};
-    adcgs_stream stream;
-    adcgs_buffer_init(bytes);
-    make_stream(&stream, what);
-    if (adcgs_stream_write(&stream, bytes, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
-    set_level(bytes->data, bytes->size, 1);
-    adcgs_stream_clear(&stream, NULL);
-}
-
-/* ---- The cost of zero streams ---- */
 
 typedef struct cost {
     adcgs_status status;
@@ -385,200 +278,14 @@ static void test_networks(void **state)
     assert_non_null(strstr(out.text, "networks"));
 }
 
-/* ---- Failing allocations ---- */
-
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *old, size_t size);
-void __real_free(void *block);
-int __real_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void *(*function)(void *), void *arg);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *old, size_t size);
-void __wrap_free(void *block);
-int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void *(*function)(void *), void *arg);
-
-/* Number of allocations that still succeed (below 0: nothing fails); blocks in use. */
-static atomic_long left = -1;
-static atomic_long blocks = 0;
-/* True while a task of a pool runs; number of allocator calls by tasks. The allocator need not be thread-safe. */
-static atomic_int in_task = 0, task_calls = 0;
-/* Threads that were not started. */
-static atomic_int denied = 0;
-
-static int fails(void)
-{
-    return atomic_load(&left) >= 0 && atomic_fetch_sub(&left, 1) == 0;
-}
-
-void *__wrap_calloc(size_t count, size_t size)
-{
-    void *block = fails() ? NULL : __real_calloc(count, size);
-    atomic_fetch_add(&blocks, block != NULL);
-    atomic_fetch_add(&task_calls, in_task);
-    return block;
-}
-
-void *__wrap_realloc(void *old, size_t size)
-{
-    void *block = fails() ? NULL : __real_realloc(old, size);
-    atomic_fetch_add(&blocks, block != NULL && old == NULL);
-    atomic_fetch_add(&task_calls, in_task);
-    return block;
-}
-
-void __wrap_free(void *block)
-{
-    atomic_fetch_sub(&blocks, block != NULL);
-    atomic_fetch_add(&task_calls, in_task);
-    __real_free(block);
-}
-
-int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void *(*function)(void *), void *arg)
-{
-    const int fails_now = fails();
-    atomic_fetch_add(&denied, fails_now);
-    return fails_now ? 11 : __real_pthread_create(id, attributes, function, arg);
-}
-
-static const adcgs_camera camera = {.width = 33,
-                                    .height = 20,
-                                    .fx = 30,
-                                    .fy = 30,
-                                    .cx = 16,
-                                    .cy = 10,
-                                    .near_plane = 0.01,
-                                    .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4}};
-
-/**
- * Opens, renders at two times and closes while allocation n fails, or the start of a thread, which is no failure. Returns true if
- * an allocation has failed.
- */
-static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
-{
-    float rgb[33 * 20 * 3];
-    uint8_t pixels[33 * 20 * 4];
-    adcgs_frame frame = {33, 20, rgb};
-    adcgs_error error = {ADCGS_OK, ""};
-    adcgs_config config;
-    adcgs_decoder *d = NULL;
-    adcgs_config_init(&config, sizeof config);
-    config.threads = threads;
-    const long before = atomic_load(&blocks);
-    const int denied_before = atomic_load(&denied);
-    atomic_store(&left, n);
-    adcgs_status status = adcgs_open_memory(&d, bytes->data, bytes->size, &config, &error);
-    if (status == ADCGS_OK)
-        status = adcgs_render(d, &camera, 0, &frame, &error);
-    if (status == ADCGS_OK)
-        status = adcgs_render_rgba8(d, &camera, 0, ADCGS_ALPHA_PREMULTIPLIED, pixels, 4 * 33, &error);
-    const int failed = atomic_load(&left) < 0;
-    atomic_store(&left, -1);
-    const int is_short = failed && atomic_load(&denied) == denied_before;
-    if (status != (is_short ? ADCGS_ERR_MEMORY : ADCGS_OK))
-        fail_msg("allocation %ld fails: status %d, %s", n, (int)status, error.text);
-    assert_int_equal(error.status, status);
-    assert_true(!is_short || error.text[0] != 0);
-    if (d && failed) /* it continues as if nothing had happened */
-        assert_int_equal(adcgs_render(d, &camera, 0, &frame, &error), ADCGS_OK);
-    adcgs_close(&d);
-    assert_int_equal(atomic_load(&blocks), before);
-    return failed;
-}
-
-/** Two segments, the second predicted, of several slices. */
-static void write_two_segments(adcgs_buffer *bytes)
-{
-    adcgs_stream stream;
-    adcgs_params params;
-    uint64_t seed = 2;
-    adcgs_random_params(&params, 1, &seed);
-    params.k = 2;
-    params.n_fg = params.chunks = 2;
-    assert_int_equal(adcgs_random_stream(&stream, &params, 2, 130, 4, &seed, NULL), ADCGS_OK);
-    stream.slice_log2 = ADCGS_SLICE_LOG2_MIN;
-    assert_true(stream.segments[1].predicted); /* with this seed */
-    adcgs_buffer_init(bytes);
-    assert_int_equal(adcgs_stream_write(&stream, bytes, NULL), ADCGS_OK);
-    adcgs_stream_clear(&stream, NULL);
-}
-
-static void run_tasks(void *tasks, adcgs_task_fn task, void *work, int n)
-{
-    in_task = 1;
-    for (int i = 0; i < n; i++)
-        task(work, i);
-    in_task = 0;
-    *(int *)tasks += n;
-}
-
-/** A caller that lends threads may have an allocator for a single thread only. */
-static void test_tasks_allocate_nothing(void **state)
-{
-    float rgb[33 * 20 * 3];
-    adcgs_frame frame = {33, 20, rgb};
-    adcgs_buffer bytes;
-    adcgs_config config;
-    adcgs_decoder *d;
-    int tasks = 0;
-    (void)state;
-    write_two_segments(&bytes);
-    adcgs_config_init(&config, sizeof config);
-    assert_int_equal(adcgs_pool_wrap(&config.pool, 3, run_tasks, &tasks, NULL), ADCGS_OK);
-    assert_int_equal(adcgs_open_memory(&d, bytes.data, bytes.size, &config, NULL), ADCGS_OK);
-    assert_true(tasks > 0);
-    tasks = 0;
-    assert_int_equal(adcgs_render(d, &camera, 0, &frame, NULL), ADCGS_OK);
-    assert_true(tasks > 0);
-    assert_int_equal(task_calls, 0);
-    adcgs_close(&d);
-    adcgs_pool_free(&config.pool);
-    adcgs_buffer_clear(&bytes);
-}
-
-static void test_failing_allocations(void **state)
-{
-    adcgs_buffer bytes;
-    (void)state;
-    write_two_segments(&bytes);
-    for (int threads = 1; threads <= 2; threads++) {
-        long n = 0;
-        while (fail_allocation(&bytes, threads, n))
-            n++;
-        print_message("%d threads: each of %ld allocations failed once\n", threads, n);
-        assert_true(n > 100);
-    }
-    adcgs_buffer_clear(&bytes);
-}
-
-/** A pool has as many threads as could be started. */
-static void test_no_threads(void **state)
-{
-    adcgs_pool *pool = NULL;
-    (void)state;
-    for (int started = 0; started < 3; started++) {
-        atomic_store(&left, 2 + started); /* the pool and its list of threads are allocated */
-        assert_int_equal(adcgs_pool_create(&pool, 4, NULL), ADCGS_OK);
-        atomic_store(&left, -1);
-        assert_int_equal(adcgs_pool_threads(pool), 1 + started);
-        assert_int_equal(adcgs_pool_missing(pool), 3 - started);
-        adcgs_pool_free(&pool);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_anchors),
-        cmocka_unit_test(test_segments),
-        cmocka_unit_test(test_weights),
-        cmocka_unit_test(test_model_bytes),
-        cmocka_unit_test(test_work),
-        cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_networks),
-        cmocka_unit_test(test_repeated_networks),
+        cmocka_unit_test(test_anchors),   cmocka_unit_test(test_segments),
+        cmocka_unit_test(test_weights),   cmocka_unit_test(test_model_bytes),
+        cmocka_unit_test(test_work),      cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_networks),  cmocka_unit_test(test_repeated_networks),
         cmocka_unit_test(test_predicted),
-        cmocka_unit_test(test_failing_allocations),
-        cmocka_unit_test(test_tasks_allocate_nothing),
-        cmocka_unit_test(test_no_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Streams: writing and reading are inverse for any valid model, for any order of arrival and any way of decoding. */
+#include "checked_streams.h"
 #include "random_model.h"
 
 #include "base/cpu_detect.h"
@@ -29,44 +30,6 @@ static int64_t read_pipe(void *user, void *buffer, size_t bytes)
         memcpy(buffer, p->data + p->pos, n);
     p->pos += n;
     return (int64_t)n;
-}
-
-static adcgs_status read_stream(adcgs_stream *stream, const uint8_t *data, size_t bytes, const adcgs_read_options *options,
-                                adcgs_error *error)
-{
-    pipe p = {data, bytes, 0, SIZE_MAX};
-    return adcgs_stream_read(stream, read_pipe, &p, options, NULL, NULL, error);
-}
-
-static const adcgs_read_options plain = {.cpu = ADCGS_CPU_SCALAR};
-
-static void check(adcgs_status status, const adcgs_error *error)
-{
-    if (status != ADCGS_OK)
-        fail_msg("%s: %s", adcgs_status_name(status), error->text);
-}
-
-static void check_equal(const adcgs_stream *a, const adcgs_stream *b)
-{
-    adcgs_error error = {ADCGS_OK, ""};
-    assert_int_equal(a->n_segments, b->n_segments);
-    for (uint32_t i = 0; i < a->n_segments; i++)
-        if (!adcgs_model_equal(&a->segments[i], &b->segments[i], &error))
-            fail_msg("segment %u: %s", i, error.text);
-    assert_int_equal(a->n_cameras, b->n_cameras);
-    for (uint32_t i = 0; i < a->n_cameras; i++) {
-        assert_string_equal(a->cameras[i].name, b->cameras[i].name);
-        assert_int_equal(a->cameras[i].width, b->cameras[i].width);
-        assert_true(a->cameras[i].fx == b->cameras[i].fx && a->cameras[i].near_plane == b->cameras[i].near_plane);
-        assert_memory_equal(a->cameras[i].cam_to_world, b->cameras[i].cam_to_world, sizeof a->cameras[i].cam_to_world);
-    }
-    assert_int_equal(a->n_meta, b->n_meta);
-    for (uint32_t i = 0; i < a->n_meta; i++) {
-        assert_string_equal(a->meta[i].key, b->meta[i].key);
-        assert_string_equal(a->meta[i].value, b->meta[i].value);
-    }
-    assert_memory_equal(&a->bytes, &b->bytes, sizeof a->bytes);
-    assert_true(a->start_ticks == b->start_ticks && a->duration_ticks == b->duration_ticks && a->level == b->level);
 }
 
 static void check_round_trip(adcgs_stream *stream)
