@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Parsing of numbers and options, escaping of text, and the JSON writer. */
+/** \file Parsing of numbers and options, progress, escaping of text. */
 #include "config.h" /* for the declarations that it enables in system headers */
+
+#include "second_sources.h"
 
 #include "cli/cli.h"
 
 #include "cli/text.h"
-#include "io/json.h"
 
 #include <getopt.h>
 #include <math.h>
@@ -348,84 +349,14 @@ static void test_shown(void **state)
     }
 }
 
-static void write_json(adcgs_json *json, const char *expected)
-{
-    char text[1024] = {0};
-    FILE *file = tmpfile();
-    assert_non_null(file);
-    assert_int_equal(adcgs_json_write(json, file, "a test", NULL), ADCGS_OK);
-    rewind(file);
-    assert_true(fread(text, 1, sizeof text - 1, file) > 0);
-    fclose(file);
-    assert_string_equal(text, expected);
-}
-
-static void test_json(void **state)
-{
-    adcgs_json json;
-    adcgs_json_init(&json);
-    adcgs_json_open(&json, NULL, '{');
-    adcgs_json_string(&json, "s", "a\"\\\n\xc3\xa4");
-    adcgs_json_open(&json, "list", '[');
-    adcgs_json_int(&json, NULL, -5);
-    adcgs_json_real(&json, NULL, 0.5);
-    adcgs_json_real(&json, NULL, 30.0);
-    adcgs_json_real(&json, NULL, 1.0 / 3.0);
-    adcgs_json_real(&json, NULL, -1.0 / 0.0);
-    adcgs_json_close(&json);
-    adcgs_json_open(&json, "empty", '{');
-    adcgs_json_close(&json);
-    adcgs_json_bool(&json, "yes", 1);
-    adcgs_json_close(&json);
-    write_json(&json, "{\n  \"s\": \"a\\\"\\\\\\n\\u00E4\",\n  \"list\": [\n    -5,\n    0.5,\n    30,\n    0.3333333333,\n"
-                      "    null\n  ],\n  \"empty\": {},\n  \"yes\": true\n}\n");
-}
-
-/* Strings of any bytes give valid JSON without control characters for a terminal. Valid characters survive. */
-static void test_json_texts(void **state)
-{
-    adcgs_json json;
-    adcgs_json_init(&json);
-    json.is_line = 1;
-    adcgs_json_open(&json, NULL, '{');
-    adcgs_json_string(&json, "\xff", "\xff\xc0\x80\xed\xa0\x80");
-    adcgs_json_string(&json, "\033", "\xc2\x9b\xe2\x80\xae\xf0\x9f\x8e\xa5\t");
-    adcgs_json_close(&json);
-    write_json(&json, "{\"\\uFFFD\":\"\\uFFFD\\uFFFD\\uFFFD\\uFFFD\\uFFFD\\uFFFD\","
-                      "\"\\u001B\":\"\\u009B\\u202E\\uD83C\\uDFA5\\t\"}\n");
-}
-
-/* A full disk is an error. Nesting too deep fails, and nothing is written. */
-static void test_json_failures(void **state)
-{
-    adcgs_json json;
-    adcgs_error error;
-    FILE *full = fopen("/dev/full", "w"), *file = tmpfile();
-    assert_non_null(file);
-    if (full) {
-        adcgs_json_init(&json);
-        adcgs_json_open(&json, NULL, '[');
-        adcgs_json_close(&json);
-        assert_int_equal(adcgs_json_write(&json, full, "full", &error), ADCGS_ERR_IO);
-        assert_string_equal(error.text, "full: cannot write: No space left on device");
-        fclose(full);
-    }
-    adcgs_json_init(&json);
-    for (int i = 0; i < ADCGS_JSON_DEPTH + 1; i++)
-        adcgs_json_open(&json, NULL, '[');
-    for (int i = 0; i < ADCGS_JSON_DEPTH + 1; i++)
-        adcgs_json_close(&json);
-    assert_int_equal(adcgs_json_write(&json, file, "deep", &error), ADCGS_ERR_MEMORY);
-    assert_int_equal(ftell(file), 0);
-    fclose(file);
-}
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_exit_codes), cmocka_unit_test(test_numbers),
-                                       cmocka_unit_test(test_options),    cmocka_unit_test(test_mistakes),
-                                       cmocka_unit_test(test_progress),   cmocka_unit_test(test_utf8),
-                                       cmocka_unit_test(test_shown),      cmocka_unit_test(test_json),
-                                       cmocka_unit_test(test_json_texts), cmocka_unit_test(test_json_failures)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_exit_codes), cmocka_unit_test(test_numbers),  cmocka_unit_test(test_options),
+        cmocka_unit_test(test_mistakes),   cmocka_unit_test(test_progress), cmocka_unit_test(test_utf8),
+        cmocka_unit_test(test_shown),
+    };
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    failed += adcgs_test_cli_json();
+    return failed;
 }

@@ -1,99 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Scenes in the layout of HyperNeRF: every field, every kind of bad input, and real scenes where available. */
-#include "outside_files.h"
+/** \file Scenes in the layout of HyperNeRF: every field, every kind of bad input. Its second source opens real scenes. */
+#include "hypernerf_files.h"
+#include "second_sources.h"
 
 #include "data/scene.h"
 #include "layouts/open.h"
 
-#include <jansson.h>
 #include <math.h>
-
-static adcgs_scene *scene;
-
-/* Images are 6x4. The first camera is turned by a quarter about its axis: its x axis is the world's y. */
-#define LENS "\"focal_length\":8,\"principal_point\":[2.5,2.25],\"image_size\":[6,4]"
-#define TURNED "\"orientation\":[[0,1,0],[-1,0,0],[0,0,1]],\"position\":[1,2,3]"
-#define PLAIN "\"orientation\":[[1,0,0],[0,1,0],[0,0,1]],\"position\":[0,0,-5]"
-#define ZERO "\"skew\":0.0,\"pixel_aspect_ratio\":1.5,\"radial_distortion\":[0,1e-7,0],\"tangential_distortion\":[0,0]"
-
-/** The files of a good scene; tests replace some of them. */
-static const struct {
-    const char *name, *text;
-} good[] = {
-    {"dataset.json", "{\"ids\":[\"a\",\"b\",\"c\"],\"train_ids\":[\"a\",\"c\"],\"val_ids\":[\"b\"]}"},
-    {"metadata.json", "{\"a\":{\"warp_id\":0},\"b\":{\"warp_id\":3,\"camera_id\":0},\"c\":{\"warp_id\":4},"
-                      "\"d\":{\"warp_id\":8}}"},
-    {"scene.json", "{\"center\":[1,0,-1],\"scale\":0.5,\"near\":0.1,\"far\":2}"},
-    {"camera/a.json", "{" TURNED "," LENS "," ZERO "}"},
-    {"camera/b.json", "{" PLAIN "," LENS ",\"tangential\":[0,1e-7]}"},
-    {"camera/c.json", "{" PLAIN "," LENS "}"},
-};
-
-#define NPY "\x93NUMPY\x01\0\x3e\0{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }  \n"
-#define NUMBERS "\0\0\x80\x3f\0\0\0\x40\0\0\x40\x40\0\0\x80\xbf\0\0\0\0\0\0\0\x3f" /* 1 2 3, -1 0 0.5 */
-
-static void put_image(const char *name)
-{
-    adcgs_image image;
-    assert_int_equal(adcgs_image_alloc(&image, 6, 4, 3, name, &error), ADCGS_OK);
-    for (int i = 0; i < 6 * 4 * 3; i++)
-        image.data[i] = (float)i / 255.0f;
-    assert_int_equal(adcgs_image_write(&image, in(name), 0, &error), ADCGS_OK);
-    adcgs_image_free(&image);
-}
-
-static void put_scene(void)
-{
-    for (size_t i = 0; i < ADCGS_COUNTOF(good); i++)
-        put_text(good[i].name, good[i].text);
-    put_bytes("points.npy", NPY NUMBERS, sizeof NPY + sizeof NUMBERS - 2);
-}
-
-static int setup(void **state)
-{
-    if (make_folder(state) || mkdir(in("camera"), 0777) || mkdir(in("rgb"), 0777) || mkdir(in("rgb/1x"), 0777))
-        return -1;
-    put_image("rgb/1x/a.png");
-    put_image("rgb/1x/b.ppm");
-    put_image("rgb/1x/c.png");
-    put_scene();
-    return 0;
-}
-
-static int mend(void **state)
-{
-    put_scene();
-    unlink(in("points3d.ply"));
-    unlink(in("transforms.json"));
-    return 0;
-}
-
-static void expect_good(adcgs_status status)
-{
-    if (status != ADCGS_OK)
-        fail_msg("%s", error.text);
-}
-
-static void open_good(void)
-{
-    expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
-}
-
-static void expect_views(uint32_t train, uint32_t test)
-{
-    assert_int_equal(scene->n_views[ADCGS_SPLIT_TRAIN], train);
-    assert_int_equal(scene->n_views[ADCGS_SPLIT_VAL], 0);
-    assert_int_equal(scene->n_views[ADCGS_SPLIT_TEST], test);
-}
-
-static void expect_bad(const char *file, const char *text, adcgs_status status, const char *what)
-{
-    put_scene();
-    put_text(file, text);
-    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), status, file, what);
-    assert_null(scene);
-    put_scene();
-}
 
 static void test_fields(void **state)
 {
@@ -364,152 +277,6 @@ static void test_mutations(void **state)
     mutate("points.npy", NPY NUMBERS, sizeof NPY + sizeof NUMBERS - 2);
 }
 
-/* ---- Real scenes ---- */
-
-/** The pixel of a projected point; 0 if it is not in front of the camera and inside the frame. */
-static int find_pixel(const adcgs_camera *c, uint32_t point, size_t *pixel)
-{
-    const double *m = c->cam_to_world;
-    double p[3];
-    for (int a = 0; a < 3; a++)
-        p[a] = m[a] * (scene->points.position[point][0] - m[3]) + m[4 + a] * (scene->points.position[point][1] - m[7]) +
-               m[8 + a] * (scene->points.position[point][2] - m[11]);
-    const double x = c->fx * p[0] / p[2] + c->cx, y = c->fy * p[1] / p[2] + c->cy;
-    if (!(p[2] > c->near_plane && x >= 0.0 && x < c->width && y >= 0.0 && y < c->height))
-        return 0;
-    *pixel = (size_t)y * (size_t)c->width + (size_t)x;
-    return 1;
-}
-
-static double share_seen(const adcgs_camera *c)
-{
-    uint32_t inside = 0;
-    size_t pixel;
-    for (uint32_t i = 0; i < scene->points.n; i++)
-        inside += (uint32_t)find_pixel(c, i, &pixel);
-    return (double)inside / scene->points.n;
-}
-
-/** Variance of a point's red from view to view, over that of all points; 1 if poses are meaningless. */
-static double inconsistency(void)
-{
-    enum { VIEWS = 8, STEP = 9 };
-    double within = 0.0, sum = 0.0, square = 0.0, n = 0.0;
-    float *red[VIEWS];
-    for (uint32_t v = 0; v < VIEWS; v++)
-        expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TRAIN][STEP * v], 1, &red[v], NULL, &error));
-    for (uint32_t i = 0; i < scene->points.n; i++) {
-        double s = 0.0, q = 0.0, k = 0.0;
-        size_t pixel;
-        for (uint32_t v = 0; v < VIEWS; v++)
-            if (find_pixel(&scene->views[ADCGS_SPLIT_TRAIN][STEP * v].camera, i, &pixel)) {
-                s += (double)red[v][pixel];
-                q += (double)red[v][pixel] * (double)red[v][pixel];
-                k++;
-            }
-        within += k > 0.0 ? q - s * s / k : 0.0;
-        sum += s;
-        square += q;
-        n += k;
-    }
-    for (uint32_t v = 0; v < VIEWS; v++)
-        free(red[v]);
-    return within / (square - sum * sum / n);
-}
-
-static double number(json_t *array, size_t i)
-{
-    return json_number_value(json_array_get(array, i));
-}
-
-/** A view's camera against the published pose: [R|t|h,w,f], camera to world in OpenGL axes, other coordinates. */
-static void check_published(const adcgs_camera *c, json_t *poses, const double centre[3], double scale)
-{
-    unsigned int index;
-    assert_int_equal(sscanf(c->name, "image%u", &index), 1);
-    json_t *pose = json_array_get(poses, index - 1);
-    for (size_t i = 0; i < 3; i++) {
-        json_t *row = json_array_get(pose, i);
-        assert_true(fabs(c->cam_to_world[4 * i] - number(row, 0)) < 1e-5);
-        assert_true(fabs(c->cam_to_world[4 * i + 1] + number(row, 1)) < 1e-5);
-        assert_true(fabs(c->cam_to_world[4 * i + 2] + number(row, 2)) < 1e-5);
-        assert_true(fabs(c->cam_to_world[4 * i + 3] - (number(row, 3) - centre[i]) * scale) < 1e-5);
-    }
-    const double h = number(json_array_get(pose, 0), 4), w = number(json_array_get(pose, 1), 4);
-    const double f = number(json_array_get(pose, 2), 4);
-    assert_true(c->width == w && c->height == h && fabs(c->fx - f) < 1e-4 && c->fy == c->fx && c->cx == w / 2 && c->cy == h / 2);
-}
-
-/** Cameras equal those that the scene's authors published in another form, and see the points triangulated with them. */
-static void test_hand(void **state)
-{
-    const char *path = real_data("nrnerf_hand");
-    expect_good(adcgs_scene_open(&scene, path, NULL, &error));
-    expect_views(75, 11);
-    assert_true(scene->n_times == 75 && scene->points.n == 4630 && scene->axes == ADCGS_AXES_Y_UP && !scene->has_alpha);
-    char file[1100];
-    snprintf(file, sizeof file, "%s/precomputed.json", path);
-    json_t *published = json_load_file(file, 0, NULL);
-    snprintf(file, sizeof file, "%s/scene.json", path);
-    json_t *coordinates = json_load_file(file, 0, NULL), *poses = json_object_get(published, "poses");
-    assert_int_equal(json_array_size(poses), 86);
-    double centre[3];
-    for (size_t i = 0; i < 3; i++)
-        centre[i] = number(json_object_get(coordinates, "center"), i);
-    for (int s = 0; s < ADCGS_SPLITS; s++)
-        for (uint32_t v = 0; v < scene->n_views[s]; v++) {
-            const adcgs_camera *c = &scene->views[s][v].camera;
-            check_published(c, poses, centre, json_number_value(json_object_get(coordinates, "scale")));
-            assert_true(share_seen(c) > 0.85);
-        }
-    assert_true(inconsistency() < 0.5);
-    assert_true(scene->duration == 85.0 / 30.0); /* 86 images, test images among them */
-    assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][10].time - scene->duration * 84.0 / 85.0) < 1e-12);
-    float *rgb;
-    expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TEST][10], 1, &rgb, NULL, &error));
-    free(rgb);
-    json_decref(published);
-    json_decref(coordinates);
-    adcgs_scene_free(&scene);
-}
-
-/** Three real cameras with missing frames and principal points off the centre; synthetic images at half size. */
-static void test_windmill(void **state)
-{
-    const char *path = real_data("dycheck_paper-windmill_cameras");
-    static const char *const parts[] = {"dataset.json", "metadata.json", "scene.json", "camera"};
-    char mine[512], at[1100];
-    adcgs_image image;
-    snprintf(mine, sizeof mine, "%s", in("windmill"));
-    assert_true(!mkdir(mine, 0777) && !mkdir(in("windmill/rgb"), 0777) && !mkdir(in("windmill/rgb/2x"), 0777));
-    for (size_t i = 0; i < ADCGS_COUNTOF(parts); i++) {
-        snprintf(at, sizeof at, "%s/%s", path, parts[i]);
-        char name[64];
-        snprintf(name, sizeof name, "windmill/%s", parts[i]);
-        assert_int_equal(symlink(at, in(name)), 0);
-    }
-    assert_int_equal(adcgs_image_alloc(&image, 360, 480, 3, "black", &error), ADCGS_OK);
-    memset(image.data, 0, 360 * 480 * 3 * sizeof *image.data);
-    expect_good(adcgs_image_write(&image, in("windmill/black.png"), 0, &error));
-    adcgs_image_free(&image);
-    snprintf(at, sizeof at, "%s/metadata.json", path);
-    json_t *metadata = json_load_file(at, 0, NULL), *entry;
-    const char *id;
-    json_object_foreach(metadata, id, entry)
-    {
-        char name[64];
-        snprintf(name, sizeof name, "windmill/rgb/2x/%s.png", id);
-        assert_int_equal(symlink("../../black.png", in(name)), 0);
-    }
-    json_decref(metadata);
-    expect_good(adcgs_scene_open(&scene, mine, NULL, &error));
-    expect_views(277, 419);
-    const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
-    assert_true(c->width == 360 && c->height == 480 && c->fx == 719.9471435546875 / 2 && c->cx == 358.8895263671875 / 2);
-    assert_true(c->cy == 484.92236328125 / 2 && scene->n_times == 277 && scene->axes == ADCGS_AXES_Y_UP && scene->points.n == 0);
-    adcgs_scene_free(&scene);
-}
-
 /** Masks in mask/Nx are used, where present, at the N of the images. */
 static void test_masks(void **state)
 {
@@ -539,20 +306,14 @@ static void test_masks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_fields, mend),
-        cmocka_unit_test_teardown(test_rule, mend),
-        cmocka_unit_test_teardown(test_reduced, mend),
-        cmocka_unit_test_teardown(test_points, mend),
-        cmocka_unit_test_teardown(test_apart, mend),
-        cmocka_unit_test_teardown(test_axes, mend),
-        cmocka_unit_test_teardown(test_detection, mend),
-        cmocka_unit_test_teardown(test_bad_lists, mend),
-        cmocka_unit_test_teardown(test_bad_scene, mend),
-        cmocka_unit_test_teardown(test_bad_cameras, mend),
-        cmocka_unit_test_teardown(test_mutations, mend),
-        cmocka_unit_test(test_hand),
-        cmocka_unit_test(test_windmill),
-        cmocka_unit_test_teardown(test_masks, mend),
+        cmocka_unit_test_teardown(test_fields, mend),    cmocka_unit_test_teardown(test_rule, mend),
+        cmocka_unit_test_teardown(test_reduced, mend),   cmocka_unit_test_teardown(test_points, mend),
+        cmocka_unit_test_teardown(test_apart, mend),     cmocka_unit_test_teardown(test_axes, mend),
+        cmocka_unit_test_teardown(test_detection, mend), cmocka_unit_test_teardown(test_bad_lists, mend),
+        cmocka_unit_test_teardown(test_bad_scene, mend), cmocka_unit_test_teardown(test_bad_cameras, mend),
+        cmocka_unit_test_teardown(test_mutations, mend), cmocka_unit_test_teardown(test_masks, mend),
     };
-    return cmocka_run_group_tests(tests, setup, remove_folder);
+    int failed = cmocka_run_group_tests(tests, setup, remove_folder);
+    failed += adcgs_test_hypernerf_real();
+    return failed;
 }
