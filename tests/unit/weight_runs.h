@@ -5,7 +5,6 @@
 
 #include "tiny_scene.h"
 
-#include "encode/encode.h"
 #include "grad/random.h"
 
 static inline void go_on(adcgs_trainer *t, uint32_t stop)
@@ -18,10 +17,7 @@ static inline void go_on(adcgs_trainer *t, uint32_t stop)
 /** A run that stopped before iteration `stop`. */
 static inline adcgs_trainer *run_to(const adcgs_train_config *config, uint32_t stop)
 {
-    adcgs_trainer *t;
-    if (adcgs_trainer_create(&t, scene, config, adcgs_cpu_best(), pool, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
-    t->quantise = adcgs_encode_quantise_hook;
+    adcgs_trainer *t = make_trainer(config, pool);
     go_on(t, stop);
     return t;
 }
