@@ -1,57 +1,19 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Prediction and deformation over groups of 64 anchors. Values that do not
- * depend on time are computed once: the canonical primitives and, for groups
- * with a moving anchor, the anchors' part of the deformation networks' first
- * layer. A group without motion is written once and never changes again.
+ * Prediction over groups of 64 anchors: the values that do not depend on time, computed once. These are the canonical
+ * primitives and, for groups with a moving anchor, the anchors' part of the deformation networks' first layer. A group without
+ * motion is written once and never changes again.
  */
 #include "config.h"
 
 #include "base/cpu_detect.h"
 #include "base/fmath.h"
-#include "splat/floatnet.h"
-#include "splat/rigid_motion.h"
-#include "splat/rows.h"
-#include "splat/splat.h"
-#include "splat/splat_isa.h"
-#include "splat/steps.h"
-#include "splat/time_curve.h"
+#include "splat/splat_priv.h"
 
 #include <stdalign.h>
 
 /* Rows of scratch, in addition to three buffers as wide as the widest network: Sigma_v, f_p and f_v, f_g. */
 #define INPUT_ROWS (ADCGS_SIGMA_MAX + 6 * ADCGS_OCTAVES_MAX + ADCGS_NV_MAX + ADCGS_NG_MAX)
-
-struct adcgs_splat {
-    const adcgs_model *model;
-    adcgs_pool *pool;
-    adcgs_memory *memory;
-    adcgs_dense_dsp dense;
-    adcgs_splat_dsp dsp;
-    adcgs_floatnet prediction, coarse, fine;
-    adcgs_steps steps;
-    uint32_t groups, moving;        /* groups of 64 anchors; groups in which an anchor moves */
-    int width;                      /* widest layer of the networks */
-    float *out;                     /* [ADCGS_ROWS][groups*k*64] */
-    uint32_t *moving_group;         /* [moving] */
-    adcgs_anchor_lanes *anchors;    /* [moving] */
-    adcgs_slot_lanes *slots;        /* [moving][k] */
-    int32_t *present;               /* [moving][k][64] */
-    int32_t *moves;                 /* [moving][64] */
-    float *coarse_part, *fine_part; /* [moving][outputs of layer 0][64]: layer 0 over the static inputs */
-    float *scratch;                 /* [threads][scratch_rows][64] */
-    size_t scratch_rows;
-    float *time_code, *coarse_time, *fine_time; /* interpolated row of Z; bias and f_t's part of layer 0 */
-    adcgs_body_pose pose[ADCGS_BODIES_MAX];
-    float time;
-    int has_time;
-};
-
-static adcgs_slot_out slot_out(const adcgs_splat *s, uint32_t group, int k)
-{
-    const size_t per_anchor = s->model->params.k;
-    return adcgs_rows_at(s->out, s->groups * per_anchor * ADCGS_LANES, adcgs_slot_of(group * ADCGS_LANES, s->model->params.k, k));
-}
 
 /* ---- Inputs of a group ---- */
 
@@ -139,7 +101,7 @@ static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const 
         adcgs_slot_lanes local, *slot = index == UINT32_MAX ? &local : s->slots + (size_t)index * p->k + k;
         int32_t none[ADCGS_LANES];
         int32_t *present = index == UINT32_MAX ? none : s->present + ((size_t)index * p->k + (size_t)k) * ADCGS_LANES;
-        const adcgs_slot_out to = slot_out(s, group, k);
+        const adcgs_slot_out to = adcgs_slot_out_of(s, group, k);
         load_fg(fg, m, group * ADCGS_LANES, k, factors);
         s->dense.dense(z, shared, NULL, first->w + p->n_fv + k, ldw, one, first->n_out, slots > 0);
         s->dense.dense(z, z, NULL, first->w + p->n_fv + slots, ldw, fg, first->n_out, p->n_fg);
@@ -228,12 +190,6 @@ static void *get(adcgs_splat *s, size_t count, size_t size, int *missing, adcgs_
     return p;
 }
 
-/* Number of columns of Z: f_t, and the poses. */
-static size_t time_columns(const adcgs_model *m)
-{
-    return (size_t)m->params.time_width + adcgs_pose_columns(&m->params);
-}
-
 static adcgs_status alloc_arrays(adcgs_splat *s, adcgs_error *error)
 {
     const size_t k = s->model->params.k, moving = s->moving, threads = (size_t)adcgs_pool_threads(s->pool);
@@ -250,7 +206,7 @@ static adcgs_status alloc_arrays(adcgs_splat *s, adcgs_error *error)
     s->coarse_part = get(s, moving * coarse, row, &missing, error);
     s->fine_part = get(s, moving * fine, row, &missing, error);
     s->scratch = get(s, threads * s->scratch_rows, row, &missing, error);
-    s->time_code = get(s, time_columns(s->model), sizeof(float), &missing, error);
+    s->time_code = get(s, adcgs_time_columns(s->model), sizeof(float), &missing, error);
     s->coarse_time = get(s, coarse, sizeof(float), &missing, error);
     s->fine_time = get(s, fine, sizeof(float), &missing, error);
     return !missing ? ADCGS_OK : adcgs_alloc_status(error);
@@ -282,6 +238,13 @@ void adcgs_splat_dsp_init(adcgs_splat_dsp *dsp, adcgs_cpu_level level)
     if (level >= ADCGS_CPU_AVX512)
         *dsp = adcgs_splat_avx512;
 #endif
+}
+
+void adcgs_position_code(float *out, const float *x, int octaves)
+{
+    adcgs_splat_dsp dsp;
+    adcgs_splat_dsp_init(&dsp, adcgs_cpu_best());
+    dsp.position_code(out, x, octaves);
 }
 
 adcgs_status adcgs_splat_create(adcgs_splat **out, const adcgs_model *model, adcgs_cpu_level cpu, adcgs_pool *pool,
@@ -323,110 +286,4 @@ void adcgs_splat_free(adcgs_splat **splat)
     adcgs_floatnet_clear(&s->fine, s->memory);
     adcgs_free(s->memory, s);
     *splat = NULL;
-}
-
-/* ---- At a time ---- */
-
-/* Interpolate f_t and the poses. */
-static void interpolate_time(adcgs_splat *s, float t)
-{
-    const adcgs_tensor *z = &s->model->net[ADCGS_ROLE_TIME].layer[0].w;
-    const size_t width = time_columns(s->model);
-    if (z->rows == 1) {
-        for (size_t j = 0; j < width; j++)
-            s->time_code[j] = adcgs_tensor_value(z, j);
-        return;
-    }
-    const adcgs_time_place at = adcgs_time_place_of(t, z->rows);
-    const size_t row = at.row;
-    for (size_t j = 0; j < width; j++) {
-        const float b = adcgs_tensor_value(z, row * width + j), c = adcgs_tensor_value(z, (row + 1) * width + j);
-        if (!s->model->params.smooth_time) {
-            s->time_code[j] = fmaf(at.fraction, c - b, b);
-            continue;
-        }
-        const float a = row > 0 ? adcgs_tensor_value(z, (row - 1) * width + j) : adcgs_time_beyond(b, c);
-        const float d = row + 2 < z->rows ? adcgs_tensor_value(z, (row + 2) * width + j) : adcgs_time_beyond(c, b);
-        s->time_code[j] = adcgs_time_blend(at.weight, a, b, c, d);
-    }
-}
-
-/* Compute the time's part of a deformation network's layer 0: the same for all anchors. */
-static void time_part(float *to, const adcgs_floatnet *net, const float *time_code, int width)
-{
-    const adcgs_float_layer *layer = &net->layer[0];
-    for (int o = 0; net->n_layers && o < layer->n_out; o++) {
-        const float *w = layer->w + (size_t)(o + 1) * (size_t)layer->n_in - width;
-        float sum = layer->b[o];
-        for (int i = 0; i < width; i++)
-            sum = fmaf(w[i], time_code[i], sum);
-        to[o] = sum;
-    }
-}
-
-/* Outputs of a deformation network for a group; NULL if there is no network. */
-static const float *deform_outputs(const adcgs_splat *s, const adcgs_floatnet *net, const float *part, const float *time,
-                                   float *z, float *other)
-{
-    static const _Alignas(64) float ones[ADCGS_LANES] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
-                                                         1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
-                                                         1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-    if (!net->n_layers)
-        return NULL;
-    /* Weight 1 times the time's part, fused with the anchors' part, is their plain sum. */
-    s->dense.dense(z, part, NULL, time, 1, ones, net->layer[0].n_out, 1);
-    return adcgs_floatnet_finish(net, &s->dense, z, other);
-}
-
-static void deform_group(void *arg, int index, int thread)
-{
-    const adcgs_splat *s = arg;
-    const adcgs_params *p = &s->model->params;
-    const uint32_t group = s->moving_group[index];
-    const size_t at = (size_t)index, rows = (size_t)s->width * ADCGS_LANES;
-    float *z = s->scratch + (size_t)thread * s->scratch_rows * ADCGS_LANES, *other = z + rows;
-    const adcgs_movers movers = {s->coarse.n_layers > 0, s->coarse.n_layers > 0 && p->coarse_rotation, p->spans};
-    adcgs_anchor_motion motion;
-    adcgs_body_lanes lanes;
-    const adcgs_body_lanes *bodies = adcgs_bodies_gather(&lanes, s->pose, s->model, group * ADCGS_LANES) ? &lanes : NULL;
-    const float *coarse_part = s->coarse_part + at * (size_t)s->coarse.layer[0].n_out * ADCGS_LANES;
-    const float *fine_part = s->fine_part + at * (size_t)s->fine.layer[0].n_out * ADCGS_LANES;
-    const float *coarse = deform_outputs(s, &s->coarse, coarse_part, s->coarse_time, z, other);
-    s->dsp.motion(&motion, s->anchors + at, coarse, &movers, bodies, s->time);
-    const float *fine = deform_outputs(s, &s->fine, fine_part, s->fine_time, z, other);
-    for (int k = 0; k < p->k; k++) {
-        const adcgs_slot_out to = slot_out(s, group, k);
-        s->dsp.deform(&to, s->slots + at * p->k + k, &motion, &movers, bodies, fine ? fine + (size_t)k * 4 * ADCGS_LANES : NULL,
-                      s->present + (at * p->k + (size_t)k) * ADCGS_LANES, s->moves + at * ADCGS_LANES);
-    }
-}
-
-float adcgs_splat_time(const adcgs_model *model, double seconds)
-{
-    const double span = (model->time_end - model->time_start) + model->reach;
-    const double t = span > 0 ? (seconds - model->time_start) / span : 0;
-    return t > 0 ? t < 1 ? (float)t : 1.0f : 0.0f;
-}
-
-adcgs_status adcgs_splat_at(adcgs_splat *s, float t, adcgs_primitives *out, adcgs_error *error)
-{
-    const float time = t > 0.0f ? (t < 1.0f ? t : 1.0f) : 0.0f;
-    if (s->moving && !(s->has_time && s->time == time)) {
-        interpolate_time(s, time);
-        adcgs_bodies_at(s->pose, &s->model->params, s->time_code);
-        time_part(s->coarse_time, &s->coarse, s->time_code, s->model->params.time_width);
-        time_part(s->fine_time, &s->fine, s->time_code, s->model->params.time_width);
-        s->time = time;
-        adcgs_pool_run(s->pool, deform_group, s, (int)s->moving);
-        s->has_time = 1;
-    }
-    *out = adcgs_rows_primitives(s->out, s->groups * s->model->params.k * ADCGS_LANES);
-    return ADCGS_OK;
-}
-
-void adcgs_position_code(float *out, const float *x, int octaves)
-{
-    adcgs_splat_dsp dsp;
-    adcgs_splat_dsp_init(&dsp, adcgs_cpu_best());
-    dsp.position_code(out, x, octaves);
 }
