@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #define ID_WIDTH 36
+#define OPTIONS_MAX 16
 #define MANIFEST_HERE "conformance/manifest.json"
 #define MANIFEST_INSTALLED CONFORMANCE_DIRECTORY "/manifest.json"
 
@@ -143,51 +144,60 @@ static const char *find_manifest(void)
     return NULL;
 }
 
-int main(int argc, char **argv)
+/** Fills the table of options, with targets in s; returns the number of options. */
+static size_t list_options(adcgs_option out[OPTIONS_MAX], settings *s)
 {
     static const char *const points[] = {"P", "M", "S", "R", NULL};
-    settings s = {.point = 3, .program = {.timeout = 20}};
-    int first = 0;
-    const adcgs_option options[] = {
+    const adcgs_option table[] = {
         {.name = "decoder",
          .kind = ADCGS_OPTION_STRING,
-         .target = &s.program.command,
+         .target = &s->program.command,
          .value = "COMMAND",
          .help = "program to check instead of the library; the shell runs it, with\n{in} and {request} replaced by files"},
         {.name = "point",
          .kind = ADCGS_OPTION_CHOICE,
-         .target = &s.point,
+         .target = &s->point,
          .choices = points,
          .value = "POINT",
          .help = "conformance point that the program claims: P, M, S or R\n(default R)"},
         {.name = "layers",
          .kind = ADCGS_OPTION_FLAG,
-         .target = &s.program.layers,
+         .target = &s->program.layers,
          .help = "the program claims that it can leave out layers: check that, too"},
         {.name = "timeout",
          .kind = ADCGS_OPTION_INT,
-         .target = &s.program.timeout,
+         .target = &s->program.timeout,
          .min = 1,
          .max = 3600,
          .value = "SECONDS",
          .help = "time limit of the program for a vector, seconds (default 20)"},
         {.name = "filter",
          .kind = ADCGS_OPTION_STRING,
-         .target = &s.filter,
+         .target = &s->filter,
          .value = "PATTERN",
          .help = "names of the vectors to check, a pattern such as 'bad-geom-*'\n(default: all)"},
-        {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &s.list, .help = "print names and titles without checking"},
+        {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &s->list, .help = "print names and titles without checking"},
         {.name = "junit",
          .kind = ADCGS_OPTION_FILE,
-         .target = &s.junit,
+         .target = &s->junit,
          .value = "FILE",
          .help = "results as JUnit XML (default: none)"},
         {.name = "self-test",
          .kind = ADCGS_OPTION_FLAG,
-         .target = &s.selftest,
+         .target = &s->selftest,
          .help = "damage each expectation and each stream in memory, one at a time, and run\n"
                  "programs that lie, crash and hang; require that the check notices"},
     };
+    memcpy(out, table, sizeof table);
+    return ADCGS_COUNTOF(table);
+}
+
+int main(int argc, char **argv)
+{
+    settings s = {.point = 3, .program = {.timeout = 20}};
+    adcgs_option options[OPTIONS_MAX];
+    const size_t n_options = list_options(options, &s);
+    int first = 0;
     const adcgs_cli cli =
         {.program = "adcgs-conform",
          .operands = "[MANIFEST]",
@@ -196,7 +206,7 @@ int main(int argc, char **argv)
                     ".\nWithout --decoder, the library is checked at every CPU level of this machine,\n"
                     "with 1, 2 and 7 threads, with the input as a whole and in pieces of a few bytes.",
          .options = options,
-         .n_options = ADCGS_COUNTOF(options),
+         .n_options = n_options,
          .max_operands = 1};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)

@@ -303,14 +303,14 @@ int main(int argc, char **argv)
     settings s = {0};
     adcgs_option options[ADCGS_DEC_OPTIONS];
     adcgs_config_init(&s.config, sizeof s.config);
-    adcgs_dec_options(&s, options);
+    const size_t n_options = adcgs_dec_options(&s, options);
     const adcgs_cli cli = {.program = "adcgs-dec",
                            .operands = "FILE|URL|-",
                            .summary = "Decode a stream and render frames from it.",
                            .details = "Exit status: 0 done, 1 MD5 or an expectation differs, 2 usage, 3 input or output,\n"
                                       "4 invalid stream, 5 unsupported.",
                            .options = options,
-                           .n_options = ADCGS_DEC_OPTIONS,
+                           .n_options = n_options,
                            .min_operands = 1,
                            .max_operands = 1,
                            .quiet = &s.quiet};

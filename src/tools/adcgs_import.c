@@ -12,6 +12,7 @@
 
 #define FRAMES 300 /* default number of frames of a moving camera */
 #define TEST_EVERY 8
+#define OPTIONS_MAX 16
 
 /* Thresholds of the warnings about poses. SPREAD_FINE: poses of a static camera, as a share of the rig's size. */
 #define POSED_WELL 0.8 /* images with a pose, share */
@@ -107,12 +108,11 @@ static const adcgs_cli program = {
     .max_operands = 100000,
 };
 
-/** Returns -1 to continue, else the exit code. */
-static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
+/** Options for the scene and its footage. Returns their number, as add_camera_options() does. */
+static size_t add_footage_options(adcgs_option *out, arguments *a)
 {
-    static const char *const lenses[] = {"radial", "pinhole", "opencv", "fisheye", NULL};
-    adcgs_import_options *o = &a->import;
-    const adcgs_option options[] = {
+    adcgs_import_options *const o = &a->import;
+    const adcgs_option table[] = {
         {.name = "output",
          .letter = 'o',
          .kind = ADCGS_OPTION_STRING,
@@ -143,6 +143,17 @@ static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
          .target = &o->masks,
          .value = "FOLDER",
          .help = "folder of masks with the images' or the cameras' names:\nblack regions are neither matched nor trained"},
+    };
+    memcpy(out, table, sizeof table);
+    return ADCGS_COUNTOF(table);
+}
+
+/** Options for the search of the cameras, and for the program. */
+static size_t add_camera_options(adcgs_option *out, arguments *a)
+{
+    adcgs_import_options *const o = &a->import;
+    static const char *const lenses[] = {"radial", "pinhole", "opencv", "fisheye", NULL};
+    const adcgs_option table[] = {
         {.name = "lens",
          .kind = ADCGS_OPTION_CHOICE,
          .target = &o->lens,
@@ -172,9 +183,19 @@ static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
          .help = "threads of COLMAP (default: one per CPU)"},
         {.name = "json", .kind = ADCGS_OPTION_FLAG, .target = &a->json, .help = "print the result as one JSON object on stdout"},
     };
+    memcpy(out, table, sizeof table);
+    return ADCGS_COUNTOF(table);
+}
+
+/** Returns -1 to continue, else the exit code. */
+static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
+{
+    adcgs_import_options *const o = &a->import;
+    adcgs_option options[OPTIONS_MAX];
     int first;
     cli->options = options;
-    cli->n_options = ADCGS_COUNTOF(options);
+    cli->n_options = add_footage_options(options, a);
+    cli->n_options += add_camera_options(options + cli->n_options, a);
     cli->quiet = &a->quiet;
     const int code = adcgs_cli_parse(cli, argc, argv, &first);
     cli->n_options = 0; /* options is local to this function */

@@ -9,11 +9,11 @@
 
 #include <stdlib.h>
 
-void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPTIONS])
+/** Options for the target of frames, and its samples. Returns their number, as the other groups do. */
+static size_t add_frame_options(adcgs_option *out, adcgs_dec_settings *s)
 {
-    static const char *const formats[] = {"y4m", "raw", "null", NULL}, *const ways[] = {"orbit", "spiral", "bullet", NULL};
-    static const char *const codecs[] = {"h264", "hevc", "vp9", "av1", "mpeg4", "ffv1", "prores", "qtrle", NULL};
-    const adcgs_option table[ADCGS_DEC_OPTIONS] = {
+    static const char *const formats[] = {"y4m", "raw", "null", NULL};
+    const adcgs_option table[] = {
         {"output", 'o', ADCGS_OPTION_FILE, &s->output, 0, 0, "TARGET",
          "target of frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.mp4 (.mov .mkv .webm .avi), clip.y4m, pixels.raw,\n"
          "or - for standard output",
@@ -33,6 +33,16 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPT
         {"alpha", 0, ADCGS_OPTION_FLAG, &s->alpha, 0, 0, NULL,
          "write alpha and leave out the background: premultiplied in\nEXR, straight in PNG, TIFF and videos", NULL, NULL},
         {"depth", 0, ADCGS_OPTION_FLAG, &s->depth, 0, 0, NULL, "write depth as channel Z of EXR, in world units", NULL, NULL},
+    };
+    memcpy(out, table, sizeof table);
+    return ADCGS_COUNTOF(table);
+}
+
+/** Options for the coding of videos. */
+static size_t add_video_options(adcgs_option *out, adcgs_dec_settings *s)
+{
+    static const char *const codecs[] = {"h264", "hevc", "vp9", "av1", "mpeg4", "ffv1", "prores", "qtrle", NULL};
+    const adcgs_option table[] = {
         {"codec", 0, ADCGS_OPTION_STRING, &s->video.codec, 0, 0, "NAME",
          "codec of a video: h264, hevc, vp9, av1, ffv1, prores, qtrle or\n"
          "the name of an FFmpeg encoder (default: by the target's name)",
@@ -43,6 +53,16 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPT
          "bits per second of a video (8M) instead of a quality", NULL, NULL},
         {"codec-options", 0, ADCGS_OPTION_STRING, &s->video.options, 0, 0, "NAME=VALUE:...",
          "options of FFmpeg for the encoder, and pix_fmt", NULL, NULL},
+    };
+    memcpy(out, table, sizeof table);
+    return ADCGS_COUNTOF(table);
+}
+
+/** Options for cameras, times and sizes: the shown part. */
+static size_t add_view_options(adcgs_option *out, adcgs_dec_settings *s)
+{
+    static const char *const ways[] = {"orbit", "spiral", "bullet", NULL};
+    const adcgs_option table[] = {
         {"beside", 0, ADCGS_OPTION_FILE, &s->beside, 0, 0, "OTHER",
          "other stream, shown to the right through the same cameras at\nthe same times", NULL, NULL},
         {"camera", 'c', ADCGS_OPTION_FILE, &s->request.camera, 0, 0, "WHICH",
@@ -66,6 +86,15 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPT
          NULL, NULL},
         {"fill", 0, ADCGS_OPTION_FLAG, &s->request.fill, 0, 0, NULL,
          "for frames of another shape: show only the view of the\ncamera, less on two sides", NULL, NULL},
+    };
+    memcpy(out, table, sizeof table);
+    return ADCGS_COUNTOF(table);
+}
+
+/** Options for the used part of the stream, and for checks. */
+static size_t add_decoding_options(adcgs_option *out, adcgs_dec_settings *s)
+{
+    const adcgs_option table[] = {
         {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
         {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "tiers of the stream to render; fewer give a coarser image", NULL,
          NULL},
@@ -80,6 +109,15 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPT
          "file of requests for digests to answer, see the\nspecification's clause on conformance", NULL, NULL},
         {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL,
          "print milliseconds from opening to the first frame, then the\nrender time of each frame", NULL, NULL},
+    };
+    memcpy(out, table, sizeof table);
+    return ADCGS_COUNTOF(table);
+}
+
+/** Options for the window, the machine and damaged streams. */
+static size_t add_program_options(adcgs_option *out, adcgs_dec_settings *s)
+{
+    const adcgs_option table[] = {
         {"play", 0, ADCGS_OPTION_FLAG, &s->play, 0, 0, NULL, "show the stream in a window, with a movable camera", NULL, NULL},
         {"script", 0, ADCGS_OPTION_FILE, &s->script, 0, 0, "COMMANDS", "with --play: file of commands that replace the user's",
          NULL, NULL},
@@ -90,7 +128,17 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPT
          "show the intact parts of a damaged file, and report faults", NULL, NULL},
         {"strict", 0, ADCGS_OPTION_FLAG, &s->config.strict_end, 0, 0, NULL, "refuse a stream that ends early", NULL, NULL},
     };
-    memcpy(options, table, sizeof table);
+    memcpy(out, table, sizeof table);
+    return ADCGS_COUNTOF(table);
+}
+
+size_t adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPTIONS])
+{
+    size_t n = add_frame_options(options, s);
+    n += add_video_options(options + n, s);
+    n += add_view_options(options + n, s);
+    n += add_decoding_options(options + n, s);
+    return n + add_program_options(options + n, s);
 }
 
 /** Reports a concealed fault. */
