@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file C interface to OpenImageIO. */
+/** \file C interface to OpenImageIO: reading, photos, and the table of its functions. */
 #include "config.h"
 
 /* Standard headers come first: the shim's own header includes C headers inside extern "C". */
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -17,9 +15,6 @@
 #include <vector>
 
 #include <strings.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
@@ -27,6 +22,8 @@
 #include <OpenImageIO/imageio.h>
 
 #include "io/oiio_shim.h"
+
+#include "io/oiio_encode.h"
 
 namespace
 {
@@ -47,12 +44,6 @@ template <typename Work> adcgs_status guarded(const char *path, adcgs_error *err
     } catch (...) {
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: OpenImageIO failed", path);
     }
-}
-
-/** The first line of a message; further lines may repeat the file's name. */
-std::string first_line(const std::string &text)
-{
-    return text.empty() ? "no reason given" : text.substr(0, text.find('\n'));
 }
 
 /** A reader over our own open file. So neither the file's name nor a name inside it can open another file. */
@@ -82,7 +73,7 @@ adcgs_status open_input(opened &in, FILE *file, const char *reader, const char *
     if (in.reader->open(name, spec, hints))
         return ADCGS_OK;
     return adcgs_fail(error, ADCGS_ERR_DATA, "%s: cannot read as an image (%s): %s", path, reader,
-                      first_line(in.reader->geterror()).c_str());
+                      adcgs_oiio_first_line(in.reader->geterror()).c_str());
 }
 
 /** Check the size before allocating pixels. */
@@ -163,139 +154,12 @@ adcgs_status read(adcgs_image *out, FILE *file, const char *reader, const char *
     } else
         good = input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, out->data);
     if (!good)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged image: %s", path, first_line(input->geterror()).c_str());
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged image: %s", path, adcgs_oiio_first_line(input->geterror()).c_str());
     if (spec.alpha_channel >= 0 && !spec.get_int_attribute("oiio:UnassociatedAlpha"))
         adcgs_image_unpremultiply(out);
     if (is_linear(spec))
         adcgs_image_to_srgb(out);
     return check_finite(out, path, error);
-}
-
-/** Write samples of the format's kind. */
-template <typename Sample>
-bool write_samples(OIIO::ImageOutput &output, const adcgs_image *image, OIIO::TypeDesc kind,
-                   void (*convert)(const float *, size_t, Sample *))
-{
-    /* Samples that OpenImageIO 2.4 reads behind the last row of an HEIC image: it assumes rows of a multiple of 64 samples. */
-    constexpr size_t BEHIND = 64 * 4;
-    const size_t n = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-    std::vector<Sample> samples(n + BEHIND);
-    convert(image->data, n, samples.data());
-    return output.write_image(kind, samples.data());
-}
-
-/** Open an output under a name, write to it and close it. */
-adcgs_status write(OIIO::ImageOutput &output, const adcgs_image *image, int bits, const std::string &name, const char *extension,
-                   const char *path, adcgs_error *error)
-{
-    const OIIO::TypeDesc kind = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
-    OIIO::ImageSpec spec(image->width, image->height, image->channels, kind);
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    if (strcmp(output.format_name(), "tiff") != 0) /* in TIFF it would become EXIF, which is lost in memory; integers are sRGB
-                                                      anyway */
-        spec.attribute("oiio:ColorSpace", "sRGB");
-    bool good = output.open(name, spec);
-    if (good && output.spec().format != kind)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no samples of %d bits", path, extension, bits);
-    if (good)
-        good = bits == 16 ? write_samples(output, image, kind, adcgs_image_to_u16)
-                          : write_samples(output, image, kind, adcgs_image_to_u8);
-    good = good && output.close();
-    if (good)
-        return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, first_line(output.geterror()).c_str());
-}
-
-/** Check by reading the output, since OpenImageIO misses some write errors. */
-bool reads_back(const char *extension, const std::string &name, OIIO::Filesystem::IOProxy *proxy, const adcgs_image *image)
-{
-    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(extension);
-    OIIO::geterror(); /* else it is printed at exit */
-    if (!input || (proxy && !input->supports("ioproxy")))
-        return true; /* no reader to check with */
-    OIIO::ImageSpec spec;
-    bool good = (!proxy || input->set_ioproxy(proxy)) && input->open(name, spec) && spec.width == image->width &&
-                spec.height == image->height;
-    if (good) {
-        std::vector<uint8_t> samples((size_t)spec.width * (size_t)spec.height * (size_t)spec.nchannels);
-        good = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, samples.data());
-    }
-    input->geterror();
-    return good;
-}
-
-adcgs_status encode_in_memory(std::vector<uint8_t> &out, OIIO::ImageOutput &output, const adcgs_image *image, int bits,
-                              const char *extension, const char *path, adcgs_error *error)
-{
-    OIIO::Filesystem::IOVecOutput writer(out);
-    if (!output.set_ioproxy(&writer))
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s files are not written in memory", path, extension);
-    const std::string name = std::string("memory.") + extension;
-    ADCGS_TRY(write(output, image, bits, name, extension, path, error));
-    OIIO::Filesystem::IOMemReader reader(out.data(), out.size());
-    if (reads_back(extension, name, &reader, image))
-        return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: OpenImageIO's output cannot be read back", path);
-}
-
-#ifdef MFD_CLOEXEC
-/** Load the whole file of a descriptor. */
-bool load(int fd, std::vector<uint8_t> &out)
-{
-    struct stat status;
-    if (fstat(fd, &status))
-        return false;
-    out.resize((size_t)status.st_size);
-    return pread(fd, out.data(), out.size(), 0) == (ssize_t)out.size();
-}
-
-/**
- * Encode formats that OpenImageIO writes to named files only. It misses most write errors there, so the file is one in memory.
- */
-adcgs_status encode_in_file(std::vector<uint8_t> &out, OIIO::ImageOutput &output, const adcgs_image *image, int bits,
-                            const char *extension, const char *path, adcgs_error *error)
-{
-    const int fd = memfd_create("adcgs", MFD_CLOEXEC);
-    if (fd < 0)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot make a file in memory: %s", path, strerror(errno));
-    const std::string name = "/proc/self/fd/" + std::to_string(fd);
-    adcgs_status status = write(output, image, bits, name, extension, path, error);
-    if (status == ADCGS_OK && !(load(fd, out) && (out.empty() || reads_back(extension, name, nullptr, image))))
-        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: OpenImageIO's output cannot be read back", path);
-    close(fd);
-    return status;
-}
-#else
-adcgs_status encode_in_file(std::vector<uint8_t> &, OIIO::ImageOutput &, const adcgs_image *, int, const char *extension,
-                            const char *path, adcgs_error *error)
-{
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this system has no files in memory, which .%s files need", path,
-                      extension);
-}
-#endif
-
-adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_image *image, int bits, const char *extension, const char *path,
-                    adcgs_error *error)
-{
-    std::vector<uint8_t> memory;
-    OIIO::attribute("threads", 1);
-    std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(extension);
-    if (!output) {
-        OIIO::geterror(); /* fetch the message, else the library prints it at exit */
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of OpenImageIO cannot write .%s files", path, extension);
-    }
-    if (image->channels % 2 == 0 && !output->supports("alpha"))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no alpha; EXR, PNG and TIFF do", path, extension);
-    ADCGS_TRY(
-        (output->supports("ioproxy") ? encode_in_memory : encode_in_file)(memory, *output, image, bits, extension, path, error));
-    if (memory.empty())
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s files hold no images", path, extension);
-    *data = static_cast<uint8_t *>(std::malloc(memory.size()));
-    if (!*data)
-        throw std::bad_alloc();
-    *bytes = memory.size();
-    std::memcpy(*data, memory.data(), *bytes);
-    return ADCGS_OK;
 }
 
 /* ---- Photos ---- */
@@ -324,12 +188,12 @@ adcgs_status take(adcgs_image *image, const OIIO::ImageBuf &from, const char *pa
     const OIIO::ImageSpec &spec = from.spec();
     adcgs_image made;
     if (from.has_error())
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %s", path, first_line(from.geterror()).c_str());
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %s", path, adcgs_oiio_first_line(from.geterror()).c_str());
     ADCGS_TRY(adcgs_image_alloc(&made, spec.width, spec.height, spec.nchannels, path, error));
     const OIIO::ROI all(spec.x, spec.x + spec.width, spec.y, spec.y + spec.height);
     if (!from.get_pixels(all, OIIO::TypeDesc::FLOAT, made.data)) {
         adcgs_image_free(&made);
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %s", path, first_line(from.geterror()).c_str());
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %s", path, adcgs_oiio_first_line(from.geterror()).c_str());
     }
     adcgs_image_free(image);
     *image = made;
@@ -399,7 +263,7 @@ adcgs_status encode_c(uint8_t **data, size_t *bytes, const adcgs_image *image, i
 {
     *data = nullptr;
     *bytes = 0;
-    return guarded(path, error, [&]() { return encode(data, bytes, image, bits, extension, path, error); });
+    return guarded(path, error, [&]() { return adcgs_oiio_encode(data, bytes, image, bits, extension, path, error); });
 }
 
 adcgs_status tell_c(adcgs_photo *photo, FILE *file, const char *reader, const char *path, adcgs_error *error) noexcept
