@@ -2,14 +2,13 @@
 /** \file Initial points of anchors. */
 #include "train/start_points.h"
 
-#include "camera/rotation.h"
 #include "data/sort_values.h"
 #include "grad/random.h"
 #include "stereo/body_pose.h"
 #include "train/scene_frame.h"
+#include "train/sight.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define START_SHARE 0.75          /* of max_anchors: known points lie on surfaces, and growth adds the rest */
 #define MATCHED_SHARE 0.9         /* of the points; the rest are random points where matching found nothing */
@@ -19,79 +18,6 @@
 #define FILM_FAR 0.4              /* camera distances per clip: slower motion is found without lifetimes */
 #define POINTS_LOOKED_AT 1000     /* points tested for visibility in any camera */
 #define MOVING_MOST 2000          /* maximum number per frame for lifetimes */
-
-/* ---- Visibility ---- */
-
-/** Maximum number of views sampled. */
-enum { SIGHTS = 64 };
-
-typedef struct sight {
-    const adcgs_scene *scene;
-    double origin[3], scale;
-    uint32_t n;         /* views sampled */
-    float *rgb[SIGHTS]; /* their images, reduced */
-    adcgs_camera camera[SIGHTS];
-} sight;
-
-static void sight_clear(sight *s)
-{
-    for (uint32_t i = 0; i < s->n; i++)
-        free(s->rgb[i]);
-}
-
-static adcgs_status sight_init(sight *s, const adcgs_scene *scene, adcgs_error *error)
-{
-    const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN], n = ADCGS_MIN(all, SIGHTS);
-    memset(s, 0, sizeof *s);
-    s->scene = scene;
-    ADCGS_TRY(adcgs_scene_frame(scene, s->origin, &s->scale, error));
-    for (uint32_t i = 0; i < n; i++) {
-        const adcgs_scene_view *view = &scene->views[ADCGS_SPLIT_TRAIN][(uint64_t)i * all / n];
-        const adcgs_status status = adcgs_scene_load(scene, view, 4, &s->rgb[i], &s->camera[i], error);
-        if (status != ADCGS_OK) {
-            sight_clear(s);
-            return status;
-        }
-        s->n = i + 1;
-    }
-    return ADCGS_OK;
-}
-
-typedef struct glimpse {
-    int seen;      /* views whose image contains the point */
-    int covered;   /* of these, views whose pixel is not background */
-    double rgb[3]; /* mean colour over the covered views */
-} glimpse;
-
-static glimpse observe_point(const sight *s, const double x[3])
-{
-    glimpse g = {0, 0, {0, 0, 0}};
-    double world[3];
-    for (int a = 0; a < 3; a++)
-        world[a] = s->origin[a] + s->scale * x[a];
-    for (uint32_t i = 0; i < s->n; i++) {
-        const adcgs_camera *c = &s->camera[i];
-        double place[2];
-        if (!adcgs_camera_sees(c, world, c->near_plane, place))
-            continue;
-        const size_t plane = (size_t)c->width * (size_t)c->height;
-        const size_t at = (size_t)place[1] * (size_t)c->width + (size_t)place[0];
-        if (isnan(s->rgb[i][at])) /* masked */
-            continue;
-        double off = 0;
-        for (int a = 0; a < 3; a++)
-            off += fabs(s->rgb[i][(size_t)a * plane + at] - s->scene->background[a]);
-        g.seen++;
-        if (s->scene->has_alpha && off < 0.02)
-            continue;
-        g.covered++;
-        for (int a = 0; a < 3; a++)
-            g.rgb[a] += s->rgb[i][(size_t)a * plane + at];
-    }
-    for (int a = 0; a < 3; a++)
-        g.rgb[a] = g.covered ? g.rgb[a] / g.covered : 0.5;
-    return g;
-}
 
 /* ---- Candidate points ---- */
 
@@ -112,7 +38,7 @@ void adcgs_start_points_clear(adcgs_start_points *c)
 }
 
 /** Converts one of the scene's points to scene units. Returns 0 if it is too far away. */
-static int given_point(double x[3], const sight *s, uint32_t i)
+static int given_point(double x[3], const adcgs_sight *s, uint32_t i)
 {
     int far = 0;
     for (int a = 0; a < 3; a++) {
@@ -123,18 +49,18 @@ static int given_point(double x[3], const sight *s, uint32_t i)
 }
 
 /** True if a camera sees any of the scene's points; at most `most` points are tested. */
-static int sees_points(const sight *s, uint32_t most)
+static int sees_points(const adcgs_sight *s, uint32_t most)
 {
     const uint32_t n = ADCGS_MIN(s->scene->points.n, most);
     double x[3];
     for (uint32_t i = 0; i < n; i++)
-        if (given_point(x, s, (uint32_t)((uint64_t)i * s->scene->points.n / n)) && observe_point(s, x).seen)
+        if (given_point(x, s, (uint32_t)((uint64_t)i * s->scene->points.n / n)) && adcgs_sight_observe(s, x).seen)
             return 1;
     return 0;
 }
 
 /** Adds the scene's points in scene units, evenly thinned. Points without a colour get the colour of the images. */
-static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
+static void given_points(adcgs_start_points *c, const adcgs_sight *s, uint32_t wanted)
 {
     const adcgs_scene_points *p = &s->scene->points;
     const uint32_t n = p->n < wanted ? p->n : wanted;
@@ -143,7 +69,7 @@ static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
         double x[3];
         if (!given_point(x, s, from))
             continue;
-        const glimpse seen = p->coloured ? (glimpse){0} : observe_point(s, x);
+        const adcgs_glimpse seen = p->coloured ? (adcgs_glimpse){0} : adcgs_sight_observe(s, x);
         for (int a = 0; a < 3; a++) {
             c->x[c->n][a] = x[a];
             c->rgb[c->n][a] = p->coloured ? p->colour[from][a] / 255.0 : seen.rgb[a];
@@ -180,14 +106,14 @@ static void random_place(double x[3], uint64_t seed, uint64_t i)
  * Adds random points that enough cameras see and, with alpha, that are opaque in enough of them. Space known from matching stays
  * empty.
  */
-static void random_points(adcgs_start_points *c, const sight *s, const adcgs_stereo *stereo, uint32_t wanted, uint64_t seed)
+static void random_points(adcgs_start_points *c, const adcgs_sight *s, const adcgs_stereo *stereo, uint32_t wanted, uint64_t seed)
 {
     for (uint64_t i = 0; c->n < wanted && i < 400ull * wanted; i++) {
         double x[3];
         random_place(x, seed, i);
         const int far = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] > NEAR_RADIUS * NEAR_RADIUS;
         const int need = (int)s->n / (far ? 10 : 4) > 1 ? (int)s->n / (far ? 10 : 4) : 1;
-        const glimpse g = observe_point(s, x);
+        const adcgs_glimpse g = adcgs_sight_observe(s, x);
         if (g.seen < need || g.covered * 2 < g.seen || adcgs_stereo_is_known(stereo, x))
             continue;
         for (int a = 0; a < 3; a++) {
@@ -296,7 +222,7 @@ static int has_points(const adcgs_scene *scene)
 /**
  * Uses the scene's points, with matched moving points; otherwise matched points, and random points where matching found nothing.
  */
-static adcgs_status find_points(adcgs_start_points *c, const sight *s, const adcgs_train_config *config,
+static adcgs_status find_points(adcgs_start_points *c, const adcgs_sight *s, const adcgs_train_config *config,
                                 const adcgs_stereo *found, adcgs_error *error)
 {
     const uint32_t all = config->start_anchors, moving = config->params.spans ? (uint32_t)(MOVING_SHARE * all) : 0;
@@ -322,13 +248,13 @@ static adcgs_status find_points(adcgs_start_points *c, const sight *s, const adc
 adcgs_status adcgs_start_points_find(adcgs_start_points *c, const adcgs_scene *scene, const adcgs_train_config *config,
                                      const adcgs_stereo *found, adcgs_error *error)
 {
-    sight s;
+    adcgs_sight s;
     *c = (adcgs_start_points){.n = 0};
-    ADCGS_TRY(sight_init(&s, scene, error));
+    ADCGS_TRY(adcgs_sight_init(&s, scene, error));
     adcgs_status status = alloc_points(c, config->start_anchors, error);
     if (status == ADCGS_OK)
         status = find_points(c, &s, config, found, error);
-    sight_clear(&s);
+    adcgs_sight_clear(&s);
     return status;
 }
 
