@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Rigid bodies: seeds, acceptance tests, and the stored result. */
+/** \file Search for rigid bodies: seeds, and acceptance tests. */
 #include "stereo/body_search.h"
 
-#include "camera/rotation.h"
-#include "camera/vector.h"
 #include "data/sort_values.h"
 #include "model/model.h"
+#include "stereo/body_result.h"
 #include "stereo/direct.h"
 #include "stereo/members.h"
 #include "stereo/merge.h"
@@ -189,8 +188,6 @@ static verdict judge(const work *w)
                : IS_NONE;
 }
 
-/* ---- Result ---- */
-
 /** Blocks seeds on and near the body in the frames where it is tracked; for a static body, in all frames. */
 static void exclude(work *w, int still)
 {
@@ -206,101 +203,7 @@ static void exclude(work *w, int still)
         }
 }
 
-static void claim(work *w, adcgs_stereo_body *b, uint8_t number)
-{
-    const adcgs_track *t = &w->t;
-    for (int m = 0; m < w->l.n; m++)
-        for (uint32_t i = 0; t->known[m] && i < t->model.n; i++) {
-            double x[3];
-            uint32_t j;
-            adcgs_rigid_apply(&t->place[m].at, t->model.p[i].x, x);
-            while (adcgs_body_match(&t->model, i, x, &w->l.all[m], &t->place[m], &j)) {
-                w->l.p[w->l.begin[m] + j].body = number;
-                w->out->moving[w->l.begin[m] + j].body = number;
-                b->n++;
-            }
-        }
-}
-
-/** Expresses the motion relative to a pivot. */
-static void set_pose(adcgs_stereo_pose *p, const adcgs_rigid *at, const double pivot[3])
-{
-    double pose[12] = {0}, there[3];
-    for (int a = 0; a < 9; a++)
-        pose[4 * (a / 3) + a % 3] = at->r[a];
-    adcgs_rotation_from_pose(pose, p->q);
-    adcgs_rigid_apply(at, pivot, there);
-    for (int a = 0; a < 3; a++)
-        p->way[a] = there[a] - pivot[a];
-}
-
-/** Interpolates between two known poses. */
-static void set_between(adcgs_stereo_pose *p, const adcgs_stereo_pose *a, const adcgs_stereo_pose *b, double share)
-{
-    double turn[3], part[4];
-    adcgs_rotation_between(a->q, b->q, turn);
-    adcgs_rotation_exp(turn, share, part);
-    adcgs_rotation_multiply(a->q, part, p->q);
-    for (int k = 0; k < 3; k++)
-        p->way[k] = a->way[k] + share * (b->way[k] - a->way[k]);
-}
-
-static void fill(work *w, adcgs_stereo_body *b)
-{
-    const float *when = w->l.rig->frame_time;
-    for (int m = 0; m < w->l.n; m++) {
-        int before = m, after = m;
-        while (before >= 0 && !w->t.known[before])
-            before--;
-        while (after < w->l.n && !w->t.known[after])
-            after++;
-        if (before == m)
-            continue;
-        if (before >= 0 && after < w->l.n)
-            set_between(&b->pose[m], &b->pose[before], &b->pose[after],
-                        (double)(when[m] - when[before]) / (double)(when[after] - when[before]));
-        else
-            b->pose[m] = b->pose[before >= 0 ? before : after];
-    }
-}
-
-/** The frame with a known pose that is nearest to the middle of time. */
-static int find_rest(const work *w)
-{
-    int best = -1;
-    for (int m = 0; m < w->l.n; m++)
-        if (w->t.known[m] && (best < 0 || fabsf(w->l.rig->frame_time[m] - 0.5f) < fabsf(w->l.rig->frame_time[best] - 0.5f)))
-            best = m;
-    return best;
-}
-
-static adcgs_status write_body(work *w, adcgs_stereo_body *b, uint8_t number, adcgs_error *error)
-{
-    double centre[3];
-    adcgs_rigid back, at;
-    const adcgs_rigid *rest = &w->t.place[find_rest(w)].at;
-    *b = (adcgs_stereo_body){.pose = adcgs_alloc(NULL, (size_t)w->l.n, sizeof *b->pose, error)};
-    if (!b->pose)
-        return adcgs_alloc_status(error);
-    adcgs_track_centre(&w->t, centre);
-    adcgs_rigid_apply(rest, centre, b->pivot);
-    adcgs_rigid_inverse(rest, &back);
-    for (int m = 0; m < w->l.n; m++)
-        if (w->t.known[m]) {
-            adcgs_rigid_then(&back, &w->t.place[m].at, &at);
-            set_pose(&b->pose[m], &at, b->pivot);
-        }
-    fill(w, b);
-    for (int m = 1; m < w->l.n; m++) {
-        const double *q = b->pose[m - 1].q;
-        double *next = b->pose[m].q;
-        const double dot = q[0] * next[0] + adcgs_v3_dot(q + 1, next + 1);
-        for (int k = 0; k < 4 && dot < 0; k++)
-            next[k] = -next[k];
-    }
-    claim(w, b, number);
-    return ADCGS_OK;
-}
+/* ---- The search ---- */
 
 static adcgs_status refine(work *w, int start, adcgs_error *error)
 {
@@ -341,7 +244,7 @@ static adcgs_status find_all(work *w, uint32_t most, adcgs_error *error)
             break;
         adcgs_status status = try_seed(w, frame, part, &is, error);
         if (is == IS_BODY) {
-            status = write_body(w, &out->body[out->n_bodies], (uint8_t)(out->n_bodies + 1), error);
+            status = adcgs_body_write(out, &w->t, &w->l, (uint8_t)(out->n_bodies + 1), error);
             out->n_bodies += status == ADCGS_OK;
         }
         vain = is == IS_BODY ? 0 : vain + 1;
