@@ -1,32 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Commands that change a finished stream, in the order of the recipe. */
-#include "edit.h"
+/** \file Commands that change a finished stream, in the order of the recipe: chunks and their elements, then bytes. */
+#include "edit_priv.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
-typedef struct editor {
-    adcgs_chunk_list *list;
-    adcgs_buffer *out; /**< the stream, from the first change of bytes on */
-    int is_bytes;
-    adcgs_script *script; /**< between "code" and "end" */
-    const adcgs_command *code;
-} editor;
-
-typedef adcgs_status (*edit_fn)(editor *e, const adcgs_command *c, adcgs_error *error);
-
-static adcgs_status find(const editor *e, const char *name, adcgs_raw_chunk **chunk, adcgs_error *error)
-{
-    int index;
-    ADCGS_TRY(adcgs_chunk_list_find(e->list, name, &index, error));
-    *chunk = &e->list->chunk[index];
-    return ADCGS_OK;
-}
+typedef adcgs_status (*edit_fn)(adcgs_editor *e, const adcgs_command *c, adcgs_error *error);
 
 /* ---- Elements ---- */
 
 /* set ELEMENT VALUE */
-static adcgs_status set_element(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status set_element(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     adcgs_element element;
     adcgs_buffer bytes;
@@ -66,11 +49,11 @@ static int header_word(adcgs_raw_chunk *chunk, const char *word, adcgs_status *s
 }
 
 /* header CHUNK NAME=VALUE ...; NAME also type */
-static adcgs_status set_header(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status set_header(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     adcgs_raw_chunk *chunk;
     ADCGS_TRY(adcgs_command_words(c, 2, 6, error));
-    ADCGS_TRY(find(e, c->word[1], &chunk, error));
+    ADCGS_TRY(adcgs_edit_find(e, c->word[1], &chunk, error));
     for (int i = 2; i < c->n; i++) {
         adcgs_status status = ADCGS_OK;
         const char *const type = adcgs_word_value(c->word[i], "type");
@@ -84,14 +67,14 @@ static adcgs_status set_header(editor *e, const adcgs_command *c, adcgs_error *e
 }
 
 /* damage CHUNK header|payload MASK: a wrong checksum */
-static adcgs_status damage(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status damage(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     static const char *const names[] = {"header", "payload", NULL};
     adcgs_raw_chunk *chunk;
     int which;
     int64_t mask;
     ADCGS_TRY(adcgs_command_words(c, 3, 3, error));
-    ADCGS_TRY(find(e, c->word[1], &chunk, error));
+    ADCGS_TRY(adcgs_edit_find(e, c->word[1], &chunk, error));
     ADCGS_TRY(adcgs_word_choice(c->word[2], names, &which, error));
     ADCGS_TRY(adcgs_word_int(c->word[3], 1, UINT32_MAX, &mask, error));
     *(which ? &chunk->payload_damage : &chunk->header_damage) = (uint32_t)mask;
@@ -99,7 +82,7 @@ static adcgs_status damage(editor *e, const adcgs_command *c, adcgs_error *error
 }
 
 /* A further word of an insert: a header element, hex=BYTES, text=TEXT, zeros=N, copy=CHUNK */
-static adcgs_status fill_chunk(editor *e, int at, const char *word, adcgs_error *error)
+static adcgs_status fill_chunk(adcgs_editor *e, int at, const char *word, adcgs_error *error)
 {
     adcgs_raw_chunk *const chunk = &e->list->chunk[at];
     adcgs_status status = ADCGS_OK;
@@ -131,7 +114,7 @@ static adcgs_status fill_chunk(editor *e, int at, const char *word, adcgs_error 
 }
 
 /* insert TYPE before|after CHUNK ... */
-static adcgs_status insert(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status insert(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     static const char *const places[] = {"before", "after", NULL};
     int place, at;
@@ -147,7 +130,7 @@ static adcgs_status insert(editor *e, const adcgs_command *c, adcgs_error *error
 }
 
 /* remove CHUNK */
-static adcgs_status remove_chunk(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status remove_chunk(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     int at;
     ADCGS_TRY(adcgs_command_words(c, 1, 1, error));
@@ -157,12 +140,12 @@ static adcgs_status remove_chunk(editor *e, const adcgs_command *c, adcgs_error 
 }
 
 /* swap CHUNK CHUNK */
-static adcgs_status swap(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status swap(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     adcgs_raw_chunk *a, *b;
     ADCGS_TRY(adcgs_command_words(c, 2, 2, error));
-    ADCGS_TRY(find(e, c->word[1], &a, error));
-    ADCGS_TRY(find(e, c->word[2], &b, error));
+    ADCGS_TRY(adcgs_edit_find(e, c->word[1], &a, error));
+    ADCGS_TRY(adcgs_edit_find(e, c->word[2], &b, error));
     const adcgs_raw_chunk keep = *a;
     *a = *b;
     *b = keep;
@@ -170,7 +153,7 @@ static adcgs_status swap(editor *e, const adcgs_command *c, adcgs_error *error)
 }
 
 /* move CHUNK before|after CHUNK */
-static adcgs_status move(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status move(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     static const char *const places[] = {"before", "after", NULL};
     int place, from, to;
@@ -188,11 +171,11 @@ static adcgs_status move(editor *e, const adcgs_command *c, adcgs_error *error)
 }
 
 /* append CHUNK HEX, shorten CHUNK N: the end of a payload */
-static adcgs_status append(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status append(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     adcgs_raw_chunk *chunk;
     ADCGS_TRY(adcgs_command_words(c, 2, 2, error));
-    ADCGS_TRY(find(e, c->word[1], &chunk, error));
+    ADCGS_TRY(adcgs_edit_find(e, c->word[1], &chunk, error));
     if (!chunk->as_is && (!strcmp(chunk->type, "INDX") || !strcmp(chunk->type, "ENDC"))) {
         adcgs_buffer scratch; /* writing fills the payload to which to append */
         adcgs_buffer_init(&scratch);
@@ -204,145 +187,21 @@ static adcgs_status append(editor *e, const adcgs_command *c, adcgs_error *error
     return adcgs_hex_decode(c->word[2], &chunk->payload, error);
 }
 
-static adcgs_status shorten(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status shorten(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     adcgs_raw_chunk *chunk;
     int64_t n;
     ADCGS_TRY(adcgs_command_words(c, 2, 2, error));
-    ADCGS_TRY(find(e, c->word[1], &chunk, error));
+    ADCGS_TRY(adcgs_edit_find(e, c->word[1], &chunk, error));
     ADCGS_TRY(adcgs_word_int(c->word[2], 1, (int64_t)chunk->payload.size, &n, error));
     chunk->payload.size -= (size_t)n;
     return ADCGS_OK;
 }
 
-/* ---- Slices ---- */
-
-static adcgs_status change_slice(adcgs_slices *s, uint32_t i, const char *word, adcgs_error *error)
-{
-    int64_t n = 0;
-    if (adcgs_word_value(word, "append"))
-        return adcgs_hex_decode(word + 7, &s->data[i], error);
-    if (adcgs_word_value(word, "hex")) {
-        s->data[i].size = 0;
-        return adcgs_hex_decode(word + 4, &s->data[i], error);
-    }
-    if (adcgs_word_value(word, "drop")) {
-        ADCGS_TRY(adcgs_word_int(word + 5, 1, (int64_t)s->data[i].size, &n, error));
-        s->data[i].size -= (size_t)n;
-        return ADCGS_OK;
-    }
-    if (!adcgs_word_value(word, "damage"))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": slices have no such property", word);
-    ADCGS_TRY(adcgs_word_int(word + 7, 1, UINT32_MAX, &n, error));
-    s->damage[i] = (uint32_t)n;
-    return ADCGS_OK;
-}
-
-/* slice CHUNK NUMBER append=HEX|hex=HEX|drop=N|damage=MASK */
-static adcgs_status edit_slice(editor *e, const adcgs_command *c, adcgs_error *error)
-{
-    adcgs_raw_chunk *chunk;
-    adcgs_slices s;
-    int64_t number;
-    ADCGS_TRY(adcgs_command_words(c, 3, 3, error));
-    ADCGS_TRY(find(e, c->word[1], &chunk, error));
-    adcgs_status status = adcgs_slices_read(&s, &chunk->payload, error);
-    if (status == ADCGS_OK)
-        status = adcgs_word_int(c->word[2], 0, (int64_t)s.n - 1, &number, error);
-    if (status == ADCGS_OK)
-        status = change_slice(&s, (uint32_t)number, c->word[3], error);
-    if (status == ADCGS_OK)
-        adcgs_slices_write(&s, 0, s.n, &chunk->payload);
-    adcgs_slices_clear(&s);
-    return status;
-}
-
-/* keep CHUNK N: its first N slices; split CHUNK N: the others in a chunk of their own */
-static adcgs_status split(editor *e, const adcgs_command *c, adcgs_error *error)
-{
-    adcgs_slices s;
-    int64_t n;
-    int at;
-    ADCGS_TRY(adcgs_command_words(c, 2, 2, error));
-    ADCGS_TRY(adcgs_chunk_list_find(e->list, c->word[1], &at, error));
-    adcgs_status status = adcgs_slices_read(&s, &e->list->chunk[at].payload, error);
-    if (status == ADCGS_OK)
-        status = adcgs_word_int(c->word[2], 1, (int64_t)s.n - 1, &n, error);
-    if (status == ADCGS_OK && adcgs_command_is(c, "split")) {
-        status = adcgs_chunk_list_insert(e->list, at + 1, e->list->chunk[at].type, error);
-        if (status == ADCGS_OK) {
-            e->list->chunk[at + 1].segment = e->list->chunk[at].segment;
-            adcgs_slices_write(&s, (uint32_t)n, s.n, &e->list->chunk[at + 1].payload);
-        }
-    }
-    if (status == ADCGS_OK)
-        adcgs_slices_write(&s, 0, (uint32_t)n, &e->list->chunk[at].payload);
-    adcgs_slices_clear(&s);
-    return status;
-}
-
-/* ---- Sub-streams, coded decision by decision ---- */
-
-/* code element NAME | slice CHUNK NUMBER | append CHUNK, up to "end" */
-static adcgs_status begin_code(editor *e, const adcgs_command *c, adcgs_error *error)
-{
-    ADCGS_TRY(adcgs_command_words(c, 2, 3, error));
-    e->code = c;
-    return adcgs_script_begin(&e->script, error);
-}
-
-static adcgs_status put_slice(editor *e, const adcgs_buffer *bytes, adcgs_error *error)
-{
-    adcgs_raw_chunk *chunk;
-    adcgs_slices s;
-    int64_t number;
-    ADCGS_TRY(find(e, e->code->word[2], &chunk, error));
-    adcgs_status status = adcgs_slices_read(&s, &chunk->payload, error);
-    if (status == ADCGS_OK)
-        status = adcgs_word_int(e->code->word[3], 0, (int64_t)s.n - 1, &number, error);
-    if (status == ADCGS_OK) {
-        s.data[number].size = 0;
-        adcgs_write_bytes(&s.data[number], bytes->data, bytes->size);
-        adcgs_slices_write(&s, 0, s.n, &chunk->payload);
-    }
-    adcgs_slices_clear(&s);
-    return status;
-}
-
-static adcgs_status put_code(editor *e, const adcgs_buffer *bytes, adcgs_error *error)
-{
-    adcgs_raw_chunk *chunk;
-    adcgs_element element;
-    if (strcmp(e->code->word[1], "slice") == 0 && e->code->n == 4)
-        return put_slice(e, bytes, error);
-    if (strcmp(e->code->word[1], "element") == 0) {
-        ADCGS_TRY(adcgs_element_find(e->list, e->code->word[2], &element, error));
-        return adcgs_element_replace(e->list, &element, bytes, error);
-    }
-    ADCGS_TRY(find(e, e->code->word[2], &chunk, error));
-    adcgs_write_bytes(&chunk->payload, bytes->data, bytes->size);
-    return ADCGS_OK;
-}
-
-static adcgs_status end_code(editor *e, const adcgs_command *c, adcgs_error *error)
-{
-    adcgs_buffer bytes;
-    (void)c;
-    if (!e->script)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "end without code");
-    adcgs_buffer_init(&bytes);
-    adcgs_status status = adcgs_script_end(e->script, &bytes, error);
-    if (status == ADCGS_OK)
-        status = put_code(e, &bytes, error);
-    adcgs_buffer_clear(&bytes);
-    adcgs_script_free(&e->script);
-    return status;
-}
-
 /* ---- Bytes ---- */
 
 /* flip BYTE MASK */
-static adcgs_status flip(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status flip(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     int64_t at, mask;
     ADCGS_TRY(adcgs_command_words(c, 2, 2, error));
@@ -353,14 +212,14 @@ static adcgs_status flip(editor *e, const adcgs_command *c, adcgs_error *error)
 }
 
 /* cut N, cut CHUNK N: N bytes of the stream are left, or of its last chunk, CHUNK; -N: N bytes fewer than all are left */
-static adcgs_status cut(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status cut(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     adcgs_raw_chunk *chunk;
     size_t begin = 0, end = e->out->size;
     int64_t n;
     ADCGS_TRY(adcgs_command_words(c, 1, 2, error));
     if (c->n == 3) {
-        ADCGS_TRY(find(e, c->word[1], &chunk, error));
+        ADCGS_TRY(adcgs_edit_find(e, c->word[1], &chunk, error));
         begin = chunk->at;
         end = chunk->at + ADCGS_CHUNK_FRAME + chunk->payload.size;
     }
@@ -370,7 +229,7 @@ static adcgs_status cut(editor *e, const adcgs_command *c, adcgs_error *error)
 }
 
 /* tail HEX: bytes after the end */
-static adcgs_status tail(editor *e, const adcgs_command *c, adcgs_error *error)
+static adcgs_status tail(adcgs_editor *e, const adcgs_command *c, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_command_words(c, 1, 1, error));
     return adcgs_hex_decode(c->word[1], e->out, error);
@@ -383,14 +242,26 @@ static const struct {
     edit_fn fn;
     int is_bytes;
 } edits[] = {
-    {"set", set_element, 0},     {"header", set_header, 0}, {"damage", damage, 0}, {"insert", insert, 0},
-    {"remove", remove_chunk, 0}, {"swap", swap, 0},         {"move", move, 0},     {"append", append, 0},
-    {"shorten", shorten, 0},     {"slice", edit_slice, 0},  {"keep", split, 0},    {"split", split, 0},
-    {"code", begin_code, 0},     {"end", end_code, 0},      {"flip", flip, 1},     {"cut", cut, 1},
+    {"set", set_element, 0},
+    {"header", set_header, 0},
+    {"damage", damage, 0},
+    {"insert", insert, 0},
+    {"remove", remove_chunk, 0},
+    {"swap", swap, 0},
+    {"move", move, 0},
+    {"append", append, 0},
+    {"shorten", shorten, 0},
+    {"slice", adcgs_edit_slice, 0},
+    {"keep", adcgs_edit_split, 0},
+    {"split", adcgs_edit_split, 0},
+    {"code", adcgs_edit_begin_code, 0},
+    {"end", adcgs_edit_end_code, 0},
+    {"flip", flip, 1},
+    {"cut", cut, 1},
     {"tail", tail, 1},
 };
 
-static adcgs_status apply(editor *e, adcgs_command *c, adcgs_error *error)
+static adcgs_status apply(adcgs_editor *e, adcgs_command *c, adcgs_error *error)
 {
     adcgs_status status;
     if (e->script && adcgs_script_step(e->script, c, &status, error)) {
@@ -413,7 +284,7 @@ static adcgs_status apply(editor *e, adcgs_command *c, adcgs_error *error)
 
 adcgs_status adcgs_edit_apply(adcgs_plan *plan, adcgs_chunk_list *list, adcgs_buffer *out, adcgs_error *error)
 {
-    editor e = {.list = list, .out = out};
+    adcgs_editor e = {.list = list, .out = out};
     adcgs_status status = ADCGS_OK;
     for (int i = 0; i < plan->recipe->n && status == ADCGS_OK; i++) {
         adcgs_command *const c = &plan->recipe->command[i];

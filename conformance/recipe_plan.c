@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Settings of a recipe: numbers, words, cameras and texts. */
+/** \file Settings of a recipe: numbers, words and lists of them; defaults. */
 #include "recipe_plan.h"
 
 #include "stream/syntax.h"
 #include "random_model.h"
-
-#include <stdio.h>
-#include <stdlib.h>
 
 /* Settings of one or several numbers, with their place in the plan and their type. */
 static const struct {
@@ -263,80 +260,6 @@ static adcgs_status add_time(adcgs_plan *plan, const adcgs_command *c, void *use
     return ADCGS_OK;
 }
 
-/* NAME WIDTH HEIGHT FX FY CX CY NEAR M0 .. M11 */
-static adcgs_status parse_camera(const adcgs_command *c, adcgs_camera *out, adcgs_error *error)
-{
-    int64_t width, height;
-    double real[17];
-    ADCGS_TRY(adcgs_command_words(c, 20, 20, error));
-    ADCGS_TRY(adcgs_word_int(c->word[2], 1, 16384, &width, error));
-    ADCGS_TRY(adcgs_word_int(c->word[3], 1, 16384, &height, error));
-    for (int i = 0; i < 17; i++)
-        ADCGS_TRY(adcgs_word_real(c->word[4 + i], &real[i], error));
-    *out = (adcgs_camera){.width = (int32_t)width,
-                          .height = (int32_t)height,
-                          .fx = real[0],
-                          .fy = real[1],
-                          .cx = real[2],
-                          .cy = real[3],
-                          .near_plane = real[4]};
-    memcpy(out->cam_to_world, real + 5, sizeof out->cam_to_world);
-    snprintf(out->name, sizeof out->name, "%s", c->word[1]);
-    return ADCGS_OK;
-}
-
-static adcgs_status add_camera(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
-{
-    (void)user;
-    if (plan->n_cameras == ADCGS_PLAN_CAMERAS)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "more than %d cameras", ADCGS_PLAN_CAMERAS);
-    return parse_camera(c, &plan->cameras[plan->n_cameras++], error);
-}
-
-static adcgs_status add_stored(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
-{
-    adcgs_stream *const s = &plan->stream;
-    (void)user;
-    if (!s->cameras)
-        s->cameras = adcgs_alloc(NULL, ADCGS_PLAN_CAMERAS, sizeof *s->cameras, error);
-    if (!s->cameras || s->n_cameras == ADCGS_PLAN_CAMERAS)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "no memory for a stored camera, or too many of them");
-    return parse_camera(c, &s->cameras[s->n_cameras++], error);
-}
-
-static char *copy_text(const char *text, adcgs_error *error)
-{
-    char *const out = adcgs_alloc(NULL, strlen(text) + 1, 1, error);
-    if (out)
-        memcpy(out, text, strlen(text));
-    return out;
-}
-
-/* KEY VALUE, or KEY times=N VALUE: the entry's text is N copies of VALUE. */
-static adcgs_status add_meta(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
-{
-    adcgs_stream *const s = &plan->stream;
-    int64_t times = 1;
-    (void)user;
-    ADCGS_TRY(adcgs_command_words(c, 2, 3, error));
-    if (c->n == 4 && !adcgs_word_value(c->word[2], "times"))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": expected times=N", c->word[2]);
-    if (c->n == 4)
-        ADCGS_TRY(adcgs_word_int(adcgs_word_value(c->word[2], "times"), 0, 65535, &times, error));
-    const char *const value = c->word[c->n - 1];
-    if (!s->meta)
-        s->meta = adcgs_alloc(NULL, ADCGS_PLAN_CAMERAS, sizeof *s->meta, error);
-    if (!s->meta || s->n_meta == ADCGS_PLAN_CAMERAS)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "no memory for an entry of metadata, or too many of them");
-    s->meta[s->n_meta].key = copy_text(c->word[1], error);
-    char *const text = s->meta[s->n_meta].value = adcgs_alloc(NULL, strlen(value) * (size_t)times + 1, 1, error);
-    if (!s->meta[s->n_meta++].key || !text)
-        return ADCGS_ERR_MEMORY;
-    for (int64_t i = 0; i < times; i++)
-        memcpy(text + (size_t)i * strlen(value), value, strlen(value));
-    return ADCGS_OK;
-}
-
 static void set_defaults(adcgs_plan *plan)
 {
     *plan = (adcgs_plan){.seed = 1, .segments = 1, .depth = 4, .origin = {-1, -1, -1}, .changed = (1 << ADCGS_INTER_GROUPS) - 1};
@@ -378,12 +301,18 @@ adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error
     static const struct {
         const char *verb;
         adcgs_command_fn fn;
-    } others[] = {{"params", set_params},       {"anchors", set_anchors},
-                  {"ticks", set_ticks},         {"times", add_time},
-                  {"reach", set_reach},         {"layers", set_fewer},
-                  {"predicted", set_predicted}, {"differences", set_differences},
-                  {"tiers", set_tiers},         {"camera", add_camera},
-                  {"stored", add_stored},       {"meta", add_meta}};
+    } others[] = {{"params", set_params},
+                  {"anchors", set_anchors},
+                  {"ticks", set_ticks},
+                  {"times", add_time},
+                  {"reach", set_reach},
+                  {"layers", set_fewer},
+                  {"predicted", set_predicted},
+                  {"differences", set_differences},
+                  {"tiers", set_tiers},
+                  {"camera", adcgs_plan_add_camera},
+                  {"stored", adcgs_plan_add_stored},
+                  {"meta", adcgs_plan_add_meta}};
     set_defaults(plan);
     plan->recipe = recipe;
     for (size_t i = 0; i < ADCGS_COUNTOF(numbers); i++)

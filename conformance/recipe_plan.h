@@ -114,4 +114,9 @@ adcgs_status adcgs_plan_set_weight(adcgs_plan *plan, const adcgs_command *comman
 typedef adcgs_status (*adcgs_command_fn)(adcgs_plan *plan, const adcgs_command *command, void *user, adcgs_error *error);
 adcgs_status adcgs_plan_each(adcgs_plan *plan, const char *verb, adcgs_command_fn fn, void *user, adcgs_error *error);
 
+/* Commands that add to lists, in plan_views.c. */
+adcgs_status adcgs_plan_add_camera(adcgs_plan *plan, const adcgs_command *command, void *user, adcgs_error *error);
+adcgs_status adcgs_plan_add_stored(adcgs_plan *plan, const adcgs_command *command, void *user, adcgs_error *error);
+adcgs_status adcgs_plan_add_meta(adcgs_plan *plan, const adcgs_command *command, void *user, adcgs_error *error);
+
 #endif

@@ -14,7 +14,7 @@
 
 /* ---- Options ---- */
 
-/** Options for the result: its file, its size or quality, and the size of the model. Returns their number, as the other groups do. */
+/** Options for the result: its file, its size or quality, the size of the model. Returns their number, as the other groups do. */
 static size_t add_result_options(adcgs_option *out, adcgs_enc_options *o)
 {
     const adcgs_setting *const lambda = adcgs_setting_find("lambda"), *const iterations = adcgs_setting_find("iterations");
