@@ -235,19 +235,14 @@ static adcgs_stereo_pose truth(int body, double t)
 
 enum { FOUND = 3, SEEN = 4 };
 
-/**
- * The model has two bodies, last posed at t = 1. Stereo finds these and a third one, in another order, by points in their places
- * at t = 1 + 2/3 and with poses relative to that time. Each known body is recognised, and gets poses relative to its rest
- * position in the model.
- */
-static void bodies_are_found_again(void **state)
+/** A model with two bodies, last posed at t = 1. */
+static adcgs_fmodel *make_bodies(void)
 {
     static const uint32_t pos[][3] = {{10, 10, 10}, {14, 12, 13}, {40, 44, 40}, {46, 46, 47}};
-    static const double pivot[3] = {0.1, -0.2, 0.05}, zero[3] = {0, 0, 0};
+    static const double zero[3] = {0, 0, 0};
     const float origin[3] = {-0.5f, -0.5f, -0.5f};
     adcgs_train_config c = follow_config();
     adcgs_fmodel *f;
-    (void)state;
     c.params.bodies = 4;
     c.params.time_rows = 2;
     c.shape.depth = 6;
@@ -259,7 +254,30 @@ static void bodies_are_found_again(void **state)
         const adcgs_stereo_pose left = truth(b, 1);
         adcgs_bodies_set_pose(f, b ? 1 : 3, 0, left.q, zero, left.way);
     }
+    return f;
+}
 
+/** Sets the pose p of a body at a time, relative to its place at t = 1 + 2/3, as stereo finds it. */
+static void see_pose(adcgs_stereo_pose *p, int body, double t, const double pivot[3])
+{
+    static const double zero[3] = {0, 0, 0};
+    const adcgs_stereo_pose now = truth(body, t), then = truth(body, 1 + 2 / 3.0);
+    const double back[4] = {then.q[0], -then.q[1], -then.q[2], -then.q[3]};
+    double at[3];
+    /* x rests at T(then) x0 and moves by T(now) T(then)^-1; the translation of that pose is the pivot's. */
+    const adcgs_stereo_pose inverse = {{back[0], back[1], back[2], back[3]}, {0, 0, 0}};
+    double moved[3] = {pivot[0] - then.way[0], pivot[1] - then.way[1], pivot[2] - then.way[2]}, x0[3];
+    place(&inverse, zero, moved, x0);
+    place(&now, zero, x0, at);
+    adcgs_rotation_multiply(now.q, back, p->q);
+    for (int a = 0; a < 3; a++)
+        p->way[a] = at[a] - pivot[a];
+}
+
+/** Both bodies of the model and a third one, in another order, each with a point. */
+static adcgs_stereo see_bodies(const adcgs_fmodel *f)
+{
+    static const double pivot[3] = {0.1, -0.2, 0.05}, zero[3] = {0, 0, 0};
     adcgs_stereo found = {.n_frames = SEEN, .n_bodies = FOUND, .n_moving = FOUND};
     found.frame_time = adcgs_alloc(NULL, SEEN, sizeof *found.frame_time, &error);
     found.body = adcgs_alloc(NULL, FOUND, sizeof *found.body, &error);
@@ -271,20 +289,8 @@ static void bodies_are_found_again(void **state)
         found.body[i].pose = adcgs_alloc(NULL, SEEN, sizeof *found.body[i].pose, &error);
         memcpy(found.body[i].pivot, pivot, sizeof pivot);
         found.moving[i] = (adcgs_stereo_point){.x = {0.4, 0.4, -0.4}, .moves = 1, .body = (uint8_t)(i + 1)};
-        for (int m = 0; m < SEEN; m++) {
-            adcgs_stereo_pose *p = &found.body[i].pose[m];
-            const adcgs_stereo_pose now = truth(b < 0 ? 0 : b, 1 + m / (SEEN - 1.0)), then = truth(b < 0 ? 0 : b, 1 + 2 / 3.0);
-            const double back[4] = {then.q[0], -then.q[1], -then.q[2], -then.q[3]};
-            double at[3];
-            /* x rests at T(then) x0 and moves by T(now) T(then)^-1; the translation of that pose is the pivot's. */
-            const adcgs_stereo_pose inverse = {{back[0], back[1], back[2], back[3]}, {0, 0, 0}};
-            double moved[3] = {pivot[0] - then.way[0], pivot[1] - then.way[1], pivot[2] - then.way[2]}, x0[3];
-            place(&inverse, zero, moved, x0);
-            place(&now, zero, x0, at);
-            adcgs_rotation_multiply(now.q, back, p->q);
-            for (int a = 0; a < 3; a++)
-                p->way[a] = at[a] - pivot[a];
-        }
+        for (int m = 0; m < SEEN; m++)
+            see_pose(&found.body[i].pose[m], b < 0 ? 0 : b, 1 + m / (SEEN - 1.0), pivot);
         if (b >= 0) { /* its point is the centre of its anchors at the first time */
             const float *centre = f->centre[b ? 0 : 2];
             const double x[3] = {(double)centre[0], (double)centre[1], (double)centre[2]};
@@ -292,7 +298,20 @@ static void bodies_are_found_again(void **state)
             place(&left, zero, x, found.moving[i].x);
         }
     }
+    return found;
+}
 
+/**
+ * The model has two bodies, last posed at t = 1. Stereo finds these and a third one, in another order, by points in their places
+ * at t = 1 + 2/3 and with poses relative to that time. Each known body is recognised, and gets poses relative to its rest
+ * position in the model.
+ */
+static void bodies_are_found_again(void **state)
+{
+    static const double zero[3] = {0, 0, 0};
+    adcgs_fmodel *f = make_bodies();
+    adcgs_stereo found = see_bodies(f);
+    (void)state;
     assert_int_equal(adcgs_continue_bodies(f, &found, &error), ADCGS_OK);
     assert_int_equal(found.n_bodies, 4);
     assert_int_equal(found.moving[0].body, 1);

@@ -29,21 +29,29 @@ static const adcgs_kind *kind_of(const char *name, const char *bytes, size_t n, 
     return adcgs_kind_of(begin, size < sizeof begin ? size : sizeof begin, size, NULL, name);
 }
 
-static void test_names(void **state)
+/** The first bytes of a file, and its kind. */
+typedef struct kind_case {
+    const char *name, *bytes;
+    size_t n;
+    const char *kind;
+    adcgs_kind_class class;
+} kind_case;
+
+/** Each file is of its kind, and each of its beginnings of some kind. */
+static void expect_kinds(const kind_case *cases, size_t n)
 {
-    static const struct {
-        const char *name, *bytes;
-        size_t n;
-        const char *kind;
-        adcgs_kind_class class;
-    } cases[] = {
-        {"a",
-         BYTES("\x8b"
-               "ADC\r\n\x1a\n"),
-         "an adcgs stream", ADCGS_KIND_STREAM},
-        {"a", BYTES("<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html"), "a page of adcgs-share",
-         ADCGS_KIND_PAGE},
-        {"a", BYTES("\xef\xbb\xbf <html lang=\"de\">"), "a page (HTML)", ADCGS_KIND_OTHER},
+    for (size_t i = 0; i < n; i++) {
+        const adcgs_kind *const kind = kind_of(cases[i].name, cases[i].bytes, cases[i].n, cases[i].n);
+        if (strcmp(kind->name, cases[i].kind) || kind->class != cases[i].class)
+            fail_msg("case %zu: %s, expected %s", i, kind->name, cases[i].kind);
+        for (size_t cut = 0; cut < cases[i].n; cut++)
+            assert_non_null(kind_of(cases[i].name, cases[i].bytes, cut, cut)->name);
+    }
+}
+
+static void test_names_of_pictures(void **state)
+{
+    static const kind_case cases[] = {
         {"a.png", BYTES("\xff\xd8\xff\xe0"), "a JPEG image", ADCGS_KIND_IMAGE},
         {"a", BYTES("RIFF\1\2\3\4WEBPVP8 "), "a WebP image", ADCGS_KIND_IMAGE},
         {"a", BYTES("II*\0\x08\0\0\0\0\0"), "a TIFF image", ADCGS_KIND_IMAGE},
@@ -81,6 +89,20 @@ static void test_names(void **state)
         {"a", BYTES("BM\0\1\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0"), "a BMP image", ADCGS_KIND_IMAGE},
         {"a", BYTES("P4\n1 1\n"), "a PBM, PGM, PPM or PFM image", ADCGS_KIND_IMAGE},
         {"a", BYTES("8BPS\0\1"), "a Photoshop document", ADCGS_KIND_IMAGE},
+    };
+    expect_kinds(cases, ADCGS_COUNTOF(cases));
+}
+
+static void test_names_of_splats(void **state)
+{
+    static const kind_case cases[] = {
+        {"a",
+         BYTES("\x8b"
+               "ADC\r\n\x1a\n"),
+         "an adcgs stream", ADCGS_KIND_STREAM},
+        {"a", BYTES("<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html"), "a page of adcgs-share",
+         ADCGS_KIND_PAGE},
+        {"a", BYTES("\xef\xbb\xbf <html lang=\"de\">"), "a page (HTML)", ADCGS_KIND_OTHER},
         {"a", BYTES("NGSP\4"), "splats (SPZ)", ADCGS_KIND_SPLATS},
         {"a", BYTES("glTF\2\0\0\0"), "a glTF binary file (GLB)", ADCGS_KIND_SPLATS},
         {"a", BYTES("ply\nformat ascii 1.0\nelement vertex 1\nproperty float f_dc_0\n"), "splats (PLY)", ADCGS_KIND_SPLATS},
@@ -92,6 +114,13 @@ static void test_names(void **state)
          ADCGS_KIND_SPLATS},
         {"a", BYTES("PK\3\4 params.npy"), "arrays of NumPy (NPZ)", ADCGS_KIND_OTHER},
         {"a", BYTES("LASF"), "a point cloud (LAS or LAZ)", ADCGS_KIND_POINTS},
+    };
+    expect_kinds(cases, ADCGS_COUNTOF(cases));
+}
+
+static void test_names_of_texts(void **state)
+{
+    static const kind_case cases[] = {
         {"a", BYTES("{\"w\":1,\"h\":1,\"K\":[1],\"poses\":[[1]]}"), "Record3D's metadata.json", ADCGS_KIND_SCENE},
         {"a", BYTES("{\"poses\":[["), "Record3D's metadata.json", ADCGS_KIND_SCENE},
         {"a", BYTES("{\"w\":1,\"h\":1,\"k\":[],\"w2c\":[],\"fn\":[]}"), "the cameras of a scene (JSON)", ADCGS_KIND_SCENE},
@@ -111,13 +140,12 @@ static void test_names(void **state)
         {"a.null?RES=64x64&CHANNELS=3", BYTES("whatever"), "a file of unknown kind", ADCGS_KIND_UNKNOWN},
         {"a", BYTES(""), "a file of unknown kind", ADCGS_KIND_UNKNOWN},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        const adcgs_kind *const kind = kind_of(cases[i].name, cases[i].bytes, cases[i].n, cases[i].n);
-        if (strcmp(kind->name, cases[i].kind) || kind->class != cases[i].class)
-            fail_msg("case %zu: %s, expected %s", i, kind->name, cases[i].kind);
-        for (size_t cut = 0; cut < cases[i].n; cut++)
-            assert_non_null(kind_of(cases[i].name, cases[i].bytes, cut, cut)->name);
-    }
+    expect_kinds(cases, ADCGS_COUNTOF(cases));
+}
+
+/** Signatures that lie far behind the first byte. */
+static void test_names_by_late_bytes(void **state)
+{
     char text[300] = "";
     memcpy(text + 128, "DICM", 4);
     assert_string_equal(kind_of("a", text, 200, 200)->name, "a DICOM image");
@@ -292,8 +320,15 @@ static void test_wants(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_names),        cmocka_unit_test(test_unmarked), cmocka_unit_test(test_no_images),
-        cmocka_unit_test(test_sizes),        cmocka_unit_test(test_readers),  cmocka_unit_test(test_wants),
+        cmocka_unit_test(test_names_of_pictures),
+        cmocka_unit_test(test_names_of_splats),
+        cmocka_unit_test(test_names_of_texts),
+        cmocka_unit_test(test_names_by_late_bytes),
+        cmocka_unit_test(test_unmarked),
+        cmocka_unit_test(test_no_images),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_readers),
+        cmocka_unit_test(test_wants),
 #ifdef __linux__
         cmocka_unit_test(test_nothing_else),
 #endif
