@@ -9,7 +9,7 @@
 #include "io/video.h"
 #include "tools/dec_budget.h"
 
-#define ADCGS_DEC_OPTIONS 35
+#define ADCGS_DEC_OPTIONS 64 /**< at most, as in cli.c */
 
 typedef struct adcgs_dec_settings {
     const adcgs_cli *cli;
