@@ -20,7 +20,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define OPTIONS_MAX 64   /* of a program */
 #define HELP_COLUMN 28   /* column of the options' descriptions */
 #define MESSAGE_MAX 8192 /* bytes of a message */
 
@@ -211,10 +210,20 @@ static int print_version(const adcgs_cli *cli)
     return adcgs_cli_leave(cli, 0);
 }
 
+void adcgs_options_add(adcgs_option_table *table, const adcgs_option *group, size_t n)
+{
+    if (n > ADCGS_OPTIONS_MAX - table->n) {
+        fprintf(stderr, "option --%s: more than %d options: raise ADCGS_OPTIONS_MAX\n", group->name, ADCGS_OPTIONS_MAX);
+        exit(1);
+    }
+    memcpy(table->rows + table->n, group, n * sizeof *group);
+    table->n += n;
+}
+
 /** Make getopt_long()'s two tables from ours. Codes above UCHAR_MAX are options without a letter. */
 static size_t getopt_tables(const adcgs_cli *cli, struct option *longs, char *letters)
 {
-    size_t n = ADCGS_MIN(cli->n_options, (size_t)OPTIONS_MAX);
+    size_t n = ADCGS_MIN(cli->n_options, (size_t)ADCGS_OPTIONS_MAX);
     *letters++ = ':'; /* reports a missing value as ':' */
     for (size_t i = 0; i < n; i++) {
         const adcgs_option *option = &cli->options[i];
@@ -265,8 +274,8 @@ static int check_operands(const adcgs_cli *cli, int n, const char *surplus)
 
 int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
 {
-    struct option longs[OPTIONS_MAX + 4];
-    char letters[2 * OPTIONS_MAX + 5];
+    struct option longs[ADCGS_OPTIONS_MAX + 4];
+    char letters[2 * ADCGS_OPTIONS_MAX + 5];
     getopt_tables(cli, longs, letters);
     opterr = 0;
     optind = 0; /* restarts the scan, with GNU and musl: a program may parse two command lines */

@@ -37,6 +37,17 @@ typedef struct adcgs_option {
     int *given;                 /**< set to 1 when the option is given; may be NULL */
 } adcgs_option;
 
+#define ADCGS_OPTIONS_MAX 64 /**< options of a program */
+
+/** A table of options that consists of groups. Zero-initialise before the first group. */
+typedef struct adcgs_option_table {
+    adcgs_option rows[ADCGS_OPTIONS_MAX];
+    size_t n;
+} adcgs_option_table;
+
+/** Appends a group of n options. More than ADCGS_OPTIONS_MAX are a defect of the program, which then ends with exit status 1. */
+void adcgs_options_add(adcgs_option_table *table, const adcgs_option *group, size_t n);
+
 /**
  * A program. --help (-h) and --version (-V) are added automatically, and --quiet (-q) if quiet is set. --completion alone, which
  * the help does not list, prints the table for the shell (cli/completion.h).
@@ -47,7 +58,7 @@ typedef struct adcgs_cli {
     const char *summary;  /**< purpose of the program, one sentence */
     const char *details;  /**< printed after the options; may be NULL */
     const adcgs_option *options;
-    size_t n_options;
+    size_t n_options; /**< at most ADCGS_OPTIONS_MAX */
     int min_operands, max_operands;
     int *quiet; /**< set to 1 by --quiet, which suppresses progress and remarks; NULL: no such option */
 } adcgs_cli;

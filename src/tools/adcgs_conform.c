@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 #define ID_WIDTH 36
-#define OPTIONS_MAX 16
 #define MANIFEST_HERE "conformance/manifest.json"
 #define MANIFEST_INSTALLED CONFORMANCE_DIRECTORY "/manifest.json"
 
@@ -144,8 +143,8 @@ static const char *find_manifest(void)
     return NULL;
 }
 
-/** Fills the table of options, with targets in s; returns the number of options. */
-static size_t list_options(adcgs_option out[OPTIONS_MAX], settings *s)
+/** Fills the table of options, with targets in s. */
+static void list_options(adcgs_option_table *out, settings *s)
 {
     static const char *const points[] = {"P", "M", "S", "R", NULL};
     const adcgs_option table[] = {
@@ -188,15 +187,14 @@ static size_t list_options(adcgs_option out[OPTIONS_MAX], settings *s)
          .help = "damage each expectation and each stream in memory, one at a time, and run\n"
                  "programs that lie, crash and hang; require that the check notices"},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 int main(int argc, char **argv)
 {
     settings s = {.point = 3, .program = {.timeout = 20}};
-    adcgs_option options[OPTIONS_MAX];
-    const size_t n_options = list_options(options, &s);
+    adcgs_option_table options = {.n = 0};
+    list_options(&options, &s);
     int first = 0;
     const adcgs_cli cli =
         {.program = "adcgs-conform",
@@ -205,8 +203,8 @@ int main(int argc, char **argv)
          .details = "The default MANIFEST is conformance/manifest.json, here or else as installed in\n" CONFORMANCE_DIRECTORY
                     ".\nWithout --decoder, the library is checked at every CPU level of this machine,\n"
                     "with 1, 2 and 7 threads, with the input as a whole and in pieces of a few bytes.",
-         .options = options,
-         .n_options = n_options,
+         .options = options.rows,
+         .n_options = options.n,
          .max_operands = 1};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)

@@ -301,16 +301,16 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
 int main(int argc, char **argv)
 {
     settings s = {0};
-    adcgs_option options[ADCGS_DEC_OPTIONS];
+    adcgs_option_table options = {.n = 0};
     adcgs_config_init(&s.config, sizeof s.config);
-    const size_t n_options = adcgs_dec_options(&s, options);
+    adcgs_dec_options(&s, &options);
     const adcgs_cli cli = {.program = "adcgs-dec",
                            .operands = "FILE|URL|-",
                            .summary = "Decode a stream and render frames from it.",
                            .details = "Exit status: 0 done, 1 MD5 or an expectation differs, 2 usage, 3 input or output,\n"
                                       "4 invalid stream, 5 unsupported.",
-                           .options = options,
-                           .n_options = n_options,
+                           .options = options.rows,
+                           .n_options = options.n,
                            .min_operands = 1,
                            .max_operands = 1,
                            .quiet = &s.quiet};

@@ -6,7 +6,6 @@
 #include <stdio.h>
 
 #define SCENES_MAX 128 /* scenes that completion offers */
-#define OPTIONS_MAX 32
 
 /** As on the command line. */
 typedef struct arguments {
@@ -23,8 +22,8 @@ static void show(void *user, int done, int total)
     adcgs_progress_show(user, "image %d of %d", done, total);
 }
 
-/** Options for the content: scene, sizes and motion. Returns their number, as the other groups do. */
-static size_t add_content_options(adcgs_option *out, arguments *a)
+/** Options for the content: scene, sizes and motion. */
+static void add_content_options(adcgs_option_table *out, arguments *a)
 {
     const adcgs_option table[] = {
         {.name = "scene",
@@ -63,12 +62,11 @@ static size_t add_content_options(adcgs_option *out, arguments *a)
          .value = "N",
          .help = "number of training cameras (default: the scene's own)"},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for the faults of the training views, and for the views that are not for training. */
-static size_t add_fault_options(adcgs_option *out, arguments *a)
+static void add_fault_options(adcgs_option_table *out, arguments *a)
 {
     const adcgs_option table[] = {
         {.name = "noise",
@@ -99,12 +97,11 @@ static size_t add_fault_options(adcgs_option *out, arguments *a)
          .value = "TURNS",
          .help = "distance of the test camera from the last training\ncamera, turns (default 0: among the training cameras)"},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for the files and the program. */
-static size_t add_output_options(adcgs_option *out, arguments *a)
+static void add_output_options(adcgs_option_table *out, arguments *a)
 {
     const adcgs_option table[] = {
         {.name = "output",
@@ -128,8 +125,7 @@ static size_t add_output_options(adcgs_option *out, arguments *a)
          .help = "threads (default: one per CPU)"},
         {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &a->list, .help = "list the scenes and exit"},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Prints the names of all scenes, each with its description. */
@@ -168,18 +164,18 @@ static int write_scene(const adcgs_cli *cli, const arguments *a)
 int main(int argc, char **argv)
 {
     arguments a = {.scene = "demo", .directory = "demo-scene", .motion = 1.0};
-    adcgs_option options[OPTIONS_MAX];
+    adcgs_option_table options = {.n = 0};
     int first = 0;
     for (int i = 0; i < SCENES_MAX && adcgs_scenes_name(i); i++)
         a.names[i] = adcgs_scenes_name(i);
-    size_t n = add_content_options(options, &a);
-    n += add_fault_options(options + n, &a);
-    n += add_output_options(options + n, &a);
+    add_content_options(&options, &a);
+    add_fault_options(&options, &a);
+    add_output_options(&options, &a);
     const adcgs_cli cli = {.program = "adcgs-demo-scene",
                            .operands = "",
                            .summary = "Render a built-in animated scene to a folder.",
-                           .options = options,
-                           .n_options = n,
+                           .options = options.rows,
+                           .n_options = options.n,
                            .quiet = &a.quiet};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)

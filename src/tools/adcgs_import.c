@@ -12,7 +12,6 @@
 
 #define FRAMES 300 /* default number of frames of a moving camera */
 #define TEST_EVERY 8
-#define OPTIONS_MAX 16
 
 /* Thresholds of the warnings about poses. SPREAD_FINE: poses of a static camera, as a share of the rig's size. */
 #define POSED_WELL 0.8 /* images with a pose, share */
@@ -108,8 +107,8 @@ static const adcgs_cli program = {
     .max_operands = 100000,
 };
 
-/** Options for the scene and its footage. Returns their number, as add_camera_options() does. */
-static size_t add_footage_options(adcgs_option *out, arguments *a)
+/** Options for the scene and its footage. */
+static void add_footage_options(adcgs_option_table *out, arguments *a)
 {
     adcgs_import_options *const o = &a->import;
     const adcgs_option table[] = {
@@ -144,12 +143,11 @@ static size_t add_footage_options(adcgs_option *out, arguments *a)
          .value = "FOLDER",
          .help = "folder of masks with the images' or the cameras' names:\nblack regions are neither matched nor trained"},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for the search of the cameras, and for the program. */
-static size_t add_camera_options(adcgs_option *out, arguments *a)
+static void add_camera_options(adcgs_option_table *out, arguments *a)
 {
     adcgs_import_options *const o = &a->import;
     static const char *const lenses[] = {"radial", "pinhole", "opencv", "fisheye", NULL};
@@ -183,19 +181,19 @@ static size_t add_camera_options(adcgs_option *out, arguments *a)
          .help = "threads of COLMAP (default: one per CPU)"},
         {.name = "json", .kind = ADCGS_OPTION_FLAG, .target = &a->json, .help = "print the result as one JSON object on stdout"},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Returns -1 to continue, else the exit code. */
 static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
 {
     adcgs_import_options *const o = &a->import;
-    adcgs_option options[OPTIONS_MAX];
+    adcgs_option_table options = {.n = 0};
     int first;
-    cli->options = options;
-    cli->n_options = add_footage_options(options, a);
-    cli->n_options += add_camera_options(options + cli->n_options, a);
+    add_footage_options(&options, a);
+    add_camera_options(&options, a);
+    cli->options = options.rows;
+    cli->n_options = options.n;
     cli->quiet = &a->quiet;
     const int code = adcgs_cli_parse(cli, argc, argv, &first);
     cli->n_options = 0; /* options is local to this function */

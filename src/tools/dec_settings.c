@@ -9,8 +9,8 @@
 
 #include <stdlib.h>
 
-/** Options for the target of frames, and its samples. Returns their number, as the other groups do. */
-static size_t add_frame_options(adcgs_option *out, adcgs_dec_settings *s)
+/** Options for the target of frames, and its samples. */
+static void add_frame_options(adcgs_option_table *out, adcgs_dec_settings *s)
 {
     static const char *const formats[] = {"y4m", "raw", "null", NULL};
     const adcgs_option table[] = {
@@ -34,12 +34,11 @@ static size_t add_frame_options(adcgs_option *out, adcgs_dec_settings *s)
          "write alpha and leave out the background: premultiplied in\nEXR, straight in PNG, TIFF and videos", NULL, NULL},
         {"depth", 0, ADCGS_OPTION_FLAG, &s->depth, 0, 0, NULL, "write depth as channel Z of EXR, in world units", NULL, NULL},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for the coding of videos. */
-static size_t add_video_options(adcgs_option *out, adcgs_dec_settings *s)
+static void add_video_options(adcgs_option_table *out, adcgs_dec_settings *s)
 {
     static const char *const codecs[] = {"h264", "hevc", "vp9", "av1", "mpeg4", "ffv1", "prores", "qtrle", NULL};
     const adcgs_option table[] = {
@@ -54,12 +53,11 @@ static size_t add_video_options(adcgs_option *out, adcgs_dec_settings *s)
         {"codec-options", 0, ADCGS_OPTION_STRING, &s->video.options, 0, 0, "NAME=VALUE:...",
          "options of FFmpeg for the encoder, and pix_fmt", NULL, NULL},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for cameras, times and sizes: the shown part. */
-static size_t add_view_options(adcgs_option *out, adcgs_dec_settings *s)
+static void add_view_options(adcgs_option_table *out, adcgs_dec_settings *s)
 {
     static const char *const ways[] = {"orbit", "spiral", "bullet", NULL};
     const adcgs_option table[] = {
@@ -87,12 +85,11 @@ static size_t add_view_options(adcgs_option *out, adcgs_dec_settings *s)
         {"fill", 0, ADCGS_OPTION_FLAG, &s->request.fill, 0, 0, NULL,
          "for frames of another shape: show only the view of the\ncamera, less on two sides", NULL, NULL},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for the used part of the stream, and for checks. */
-static size_t add_decoding_options(adcgs_option *out, adcgs_dec_settings *s)
+static void add_decoding_options(adcgs_option_table *out, adcgs_dec_settings *s)
 {
     const adcgs_option table[] = {
         {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
@@ -110,12 +107,11 @@ static size_t add_decoding_options(adcgs_option *out, adcgs_dec_settings *s)
         {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL,
          "print milliseconds from opening to the first frame, then the\nrender time of each frame", NULL, NULL},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for the window, the machine and damaged streams. */
-static size_t add_program_options(adcgs_option *out, adcgs_dec_settings *s)
+static void add_program_options(adcgs_option_table *out, adcgs_dec_settings *s)
 {
     const adcgs_option table[] = {
         {"play", 0, ADCGS_OPTION_FLAG, &s->play, 0, 0, NULL, "show the stream in a window, with a movable camera", NULL, NULL},
@@ -128,17 +124,16 @@ static size_t add_program_options(adcgs_option *out, adcgs_dec_settings *s)
          "show the intact parts of a damaged file, and report faults", NULL, NULL},
         {"strict", 0, ADCGS_OPTION_FLAG, &s->config.strict_end, 0, 0, NULL, "refuse a stream that ends early", NULL, NULL},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
-size_t adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPTIONS])
+void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option_table *options)
 {
-    size_t n = add_frame_options(options, s);
-    n += add_video_options(options + n, s);
-    n += add_view_options(options + n, s);
-    n += add_decoding_options(options + n, s);
-    return n + add_program_options(options + n, s);
+    add_frame_options(options, s);
+    add_video_options(options, s);
+    add_view_options(options, s);
+    add_decoding_options(options, s);
+    add_program_options(options, s);
 }
 
 /** Reports a concealed fault. */

@@ -9,8 +9,6 @@
 #include "io/video.h"
 #include "tools/dec_budget.h"
 
-#define ADCGS_DEC_OPTIONS 64 /**< at most, as in cli.c */
-
 typedef struct adcgs_dec_settings {
     const adcgs_cli *cli;
     const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script, *budget_text;
@@ -24,8 +22,8 @@ typedef struct adcgs_dec_settings {
     adcgs_http *http, *http_beside; /**< connections of inputs that are URLs */
 } adcgs_dec_settings;
 
-/** Fills the table of options, in the order of the help, with targets in the settings; returns the number of options. */
-size_t adcgs_dec_options(adcgs_dec_settings *s, adcgs_option options[ADCGS_DEC_OPTIONS]);
+/** Fills the table of options, in the order of the help, with targets in the settings. */
+void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option_table *options);
 /** Checks the rules that the table cannot express, and sets the derived settings. */
 adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error);
 /** True if the coding of a video was specified. */

@@ -10,12 +10,10 @@
 #include "tools/enc_plan.h"
 #include "train/settings.h"
 
-#define OPTIONS_MAX 64 /* as in cli.c */
-
 /* ---- Options ---- */
 
-/** Options for the result: its file, its size or quality, the size of the model. Returns their number, as the other groups do. */
-static size_t add_result_options(adcgs_option *out, adcgs_enc_options *o)
+/** Options for the result: its file, its size or quality, the size of the model. */
+static void add_result_options(adcgs_option_table *out, adcgs_enc_options *o)
 {
     const adcgs_setting *const lambda = adcgs_setting_find("lambda"), *const iterations = adcgs_setting_find("iterations");
     const adcgs_setting *const scale = adcgs_setting_find("scale"), *const k = adcgs_setting_find("k");
@@ -44,12 +42,11 @@ static size_t add_result_options(adcgs_option *out, adcgs_enc_options *o)
         {"max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, anchors->min, anchors->max, "N",
          "budget of anchors (default: from the amount of detail in\nthe images)", NULL, &o->has_max_anchors},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for the scene: its kind, its frames and its initial points. */
-static size_t add_scene_options(adcgs_option *out, adcgs_enc_options *o)
+static void add_scene_options(adcgs_option_table *out, adcgs_enc_options *o)
 {
     const adcgs_option table[] = {
         {"dataset", 0, ADCGS_OPTION_CHOICE, &o->dataset, 0, 0, "KIND",
@@ -64,12 +61,11 @@ static size_t add_scene_options(adcgs_option *out, adcgs_enc_options *o)
         {"points", 0, ADCGS_OPTION_FILE, &o->points, 0, 0, "FILE",
          "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for segments: cut, planned or live. */
-static size_t add_segment_options(adcgs_option *out, adcgs_enc_options *o)
+static void add_segment_options(adcgs_option_table *out, adcgs_enc_options *o)
 {
     const adcgs_option table[] = {
         {"segment", 0, ADCGS_OPTION_SECONDS, &o->segment, 1e-3, 1e6, "S",
@@ -103,12 +99,11 @@ static size_t add_segment_options(adcgs_option *out, adcgs_enc_options *o)
          "with --live: maximum time from filming to writing, seconds;\neffort falls if needed (default: no limit)", NULL,
          &o->has_delay},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for the method: its parts and its settings. */
-static size_t add_method_options(adcgs_option *out, adcgs_enc_options *o, const char *const *names)
+static void add_method_options(adcgs_option_table *out, adcgs_enc_options *o, const char *const *names)
 {
     const adcgs_option table[] = {
         {"without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
@@ -125,12 +120,11 @@ static size_t add_method_options(adcgs_option *out, adcgs_enc_options *o, const 
         {"set", 0, ADCGS_OPTION_STRING, &o->set, 0, 0, "NAME=VALUE,...",
          "changes of the preset's settings; 'list' shows them all", names, NULL},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for the run: its end, its seed, and the files of its state. */
-static size_t add_run_options(adcgs_option *out, adcgs_enc_options *o)
+static void add_run_options(adcgs_option_table *out, adcgs_enc_options *o)
 {
     const adcgs_setting *const seed = adcgs_setting_find("seed");
     const adcgs_option table[] = {
@@ -158,12 +152,11 @@ static size_t add_run_options(adcgs_option *out, adcgs_enc_options *o)
         {"preview", 0, ADCGS_OPTION_FILE, &o->preview, 0, 0, "FILE",
          "image (PNG, JPEG, ...) of a view as filmed and as rendered,\nupdated every 30 seconds", NULL, NULL},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 /** Options for the machine, and for messages. */
-static size_t add_machine_options(adcgs_option *out, adcgs_enc_options *o)
+static void add_machine_options(adcgs_option_table *out, adcgs_enc_options *o)
 {
     const adcgs_option table[] = {
         {"memory", 0, ADCGS_OPTION_SIZE, &o->memory, 1, 1e15, "BYTES",
@@ -178,19 +171,18 @@ static size_t add_machine_options(adcgs_option *out, adcgs_enc_options *o)
          "train the networks of the rendered values in bf16, which is\nfaster; needs a CPU with AVX512-BF16", NULL, NULL},
         {"json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL},
     };
-    memcpy(out, table, sizeof table);
-    return ADCGS_COUNTOF(table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
-/** Fills the table of options, in the order of the help, with targets in o; returns the number of options. names: of settings. */
-static size_t list_options(adcgs_option out[OPTIONS_MAX], adcgs_enc_options *o, const char *const *names)
+/** Fills the table of options, in the order of the help, with targets in o. names: of settings. */
+static void list_options(adcgs_option_table *out, adcgs_enc_options *o, const char *const *names)
 {
-    size_t n = add_result_options(out, o);
-    n += add_scene_options(out + n, o);
-    n += add_segment_options(out + n, o);
-    n += add_method_options(out + n, o, names);
-    n += add_run_options(out + n, o);
-    return n + add_machine_options(out + n, o);
+    add_result_options(out, o);
+    add_scene_options(out, o);
+    add_segment_options(out, o);
+    add_method_options(out, o, names);
+    add_run_options(out, o);
+    add_machine_options(out, o);
 }
 
 /* ---- Rules ---- */
@@ -286,10 +278,11 @@ static int list_settings(const adcgs_cli *cli, const adcgs_enc_options *o)
 int adcgs_enc_parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
 {
     const char *names[ADCGS_SETTING_NAMES + 1];
-    adcgs_option options[OPTIONS_MAX];
+    adcgs_option_table options = {.n = 0};
     adcgs_setting_names(names);
-    cli->options = options;
-    cli->n_options = list_options(options, o, names);
+    cli->options = options.rows;
+    list_options(&options, o, names);
+    cli->n_options = options.n;
     cli->quiet = &o->quiet;
     const adcgs_enc_options before = *o;
     int first, code = adcgs_cli_parse(cli, argc, argv, &first);
