@@ -5,6 +5,7 @@
 #include "base/digest.h"
 #include "model/inter.h"
 #include "model/model_priv.h"
+#include "stream/chunk.h"
 
 void adcgs_info_list_components(const adcgs_bytes *b, adcgs_info_component out[ADCGS_INFO_COMPONENTS])
 {
@@ -39,6 +40,30 @@ adcgs_status adcgs_info_kept(const adcgs_info_report *r, uint32_t segment, uint3
     }
     adcgs_inter_clear(&kept, NULL);
     return status;
+}
+
+/** Types of chunks that belong to the whole stream, wherever they are. */
+static int is_of_stream(const char *type)
+{
+    static const char *const types[] = {"HEAD", "cams", "meta", "INDX", "ENDC"};
+    for (size_t i = 0; i < ADCGS_COUNTOF(types); i++)
+        if (strcmp(type, types[i]) == 0)
+            return 1;
+    return 0;
+}
+
+uint64_t adcgs_info_segment_bytes(const adcgs_info_report *r, uint32_t segment)
+{
+    uint64_t bytes = 0;
+    int inside = 0;
+    for (size_t i = 0; i < r->n_chunks; i++) {
+        const adcgs_info_chunk *c = &r->chunks[i];
+        if (strcmp(c->type, "SEGM") == 0)
+            inside = c->segment == segment;
+        if (inside && !is_of_stream(c->type))
+            bytes += (uint64_t)c->bytes + ADCGS_CHUNK_BYTES;
+    }
+    return bytes;
 }
 
 void adcgs_info_digest(const adcgs_info_report *r, uint32_t segment, char text[33])

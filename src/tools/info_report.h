@@ -37,6 +37,11 @@ uint32_t adcgs_info_count_gaussians(const adcgs_model *model);
  */
 adcgs_status adcgs_info_kept(const adcgs_info_report *report, uint32_t segment, uint32_t *same, uint32_t *refined,
                              adcgs_error *error);
+/**
+ * Bytes of a segment's chunks with their headers, from its SEGM to the next one. Header, cameras, metadata and index belong to
+ * the stream. NETW may have another segment's number, so its place counts.
+ */
+uint64_t adcgs_info_segment_bytes(const adcgs_info_report *report, uint32_t segment);
 /** Writes the digest of a segment's model in hexadecimal digits. */
 void adcgs_info_digest(const adcgs_info_report *report, uint32_t segment, char text[33]);
 
