@@ -35,6 +35,7 @@ typedef struct adcgs_image_options {
     int half;                   /**< EXR: colours and alpha as binary16 */
     int linear;                 /**< EXR: colours in linear light, as other programs expect; else in sRGB */
     int bits;                   /**< not EXR: 8 (or 0), or 16 for PNG, TIFF, PPM and PGM */
+    int quality;                /**< JPEG: 1..100, with chroma at half size; 0: 95, with chroma at full size */
     int premultiplied;          /**< the image's colours are already multiplied by its alpha; else they are straight */
     const float *depth;         /**< EXR: channel Z, [height][width], always binary32; NULL: none */
     const adcgs_camera *camera; /**< EXR: camera for the attributes; NULL: none */

@@ -149,14 +149,14 @@ adcgs_status adcgs_jpeg_read(FILE *file, adcgs_image *out, const char *path, adc
 
 /* ---- Writing ---- */
 
-static adcgs_status encode(adcgs_buffer *out, tjhandle encoder, const adcgs_image *image, const uint8_t *bytes, const char *path,
-                           adcgs_error *error)
+static adcgs_status encode(adcgs_buffer *out, tjhandle encoder, const adcgs_image *image, const uint8_t *bytes, int quality,
+                           const char *path, adcgs_error *error)
 {
     unsigned char *data = NULL;
     unsigned long size = 0;
-    const int grey = image->channels == 1;
+    const int grey = image->channels == 1, chroma = quality ? TJSAMP_420 : TJSAMP_444;
     const int code = tjCompress2(encoder, bytes, image->width, 0, image->height, grey ? TJPF_GRAY : TJPF_RGB, &data, &size,
-                                 grey ? TJSAMP_GRAY : TJSAMP_444, QUALITY, TJFLAG_ACCURATEDCT);
+                                 grey ? TJSAMP_GRAY : chroma, quality ? quality : QUALITY, TJFLAG_ACCURATEDCT);
     if (!code)
         adcgs_write_bytes(out, data, size);
     tjFree(data);
@@ -178,7 +178,7 @@ adcgs_status adcgs_jpeg_encode(adcgs_buffer *out, const adcgs_image *image, cons
     adcgs_status status = ADCGS_OK;
     if (bytes && encoder) {
         adcgs_image_to_u8(image->data, values, bytes);
-        status = encode(out, encoder, image, bytes, path, error);
+        status = encode(out, encoder, image, bytes, options->quality, path, error);
     } else
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (encoder)

@@ -15,7 +15,10 @@ adcgs_status adcgs_jpeg_probe(FILE *file, int *width, int *height, int *channels
  * up with grey, and for damaged coded data.
  */
 adcgs_status adcgs_jpeg_read(FILE *file, adcgs_image *out, const char *path, adcgs_error *error);
-/** Quality 95, chroma at full size. Appends to out. ADCGS_ERR_USAGE for alpha and for 16 bits, which JPEG does not support. */
+/**
+ * By default with quality 95 and chroma at full size. Appends to out. ADCGS_ERR_USAGE for alpha and for 16 bits, which JPEG does
+ * not support.
+ */
 adcgs_status adcgs_jpeg_encode(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options, const char *path,
                                adcgs_error *error);
 
