@@ -26,14 +26,29 @@ function press(key) {
     send(KEY, { key, down: false });
 }
 
+const SLIDER_KEYS = ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home', 'End', 'PageUp', 'PageDown'];
+
+/** Whether the focused element needs this key itself. All other keys work wherever the focus is. */
+function isForElement({ target, key }) {
+    if (!target.closest)
+        return false;
+    return target.id === 'time' ? SLIDER_KEYS.includes(key)
+                                : [' ', 'Enter'].includes(key) && target.closest('button, summary') !== null;
+}
+
 function onKey(event, down) {
     const key = KEYS[event.key] || (event.key.length === 1 ? event.key.toLowerCase().charCodeAt(0) : 0);
-    const elsewhere = event.target.tagName === 'INPUT' || (event.target.tagName === 'BUTTON' && event.key === ' ');
-    if (!key || !opened() || event.ctrlKey || event.metaKey || event.altKey || elsewhere)
+    if (down)
+        active = performance.now();
+    if (!key || !opened() || event.ctrlKey || event.metaKey || event.altKey || isForElement(event))
         return;
     if (event.key === 'k' || event.key === 'v' || (event.key === 'q' && !view.call.view_flying())) // keys for windows only
         return;
-    if (key === KEYS.Escape && !view.call.view_help() && !view.call.view_flying())
+    if (key === KEYS.Escape && down && closePanels()) {
+        event.preventDefault();
+        return;
+    }
+    if (key === KEYS.Escape && !view.call.view_flying())
         return;
     const layers = view.call.view_layers();
     send(KEY, { key, down, again: event.repeat });
@@ -59,12 +74,14 @@ function placeOf(event) {
 
 /** Whether an event is on the image, not on an element over it. */
 function isOnPicture(event) {
-    return !event.target.closest('#empty, #facts, #help');
+    return !event.target.closest('#empty, #failure, #begin, #bar, .panel');
 }
 
 function onDown(event) {
-    if (!isOnPicture(event))
+    active = performance.now();
+    if (!isOnPicture(event) || closePanels())
         return;
+    hideHint();
     const at = placeOf(event);
     $('stage').setPointerCapture(event.pointerId);
     $('exact').focus({ preventScroll: true });
@@ -78,6 +95,7 @@ function onDown(event) {
 }
 
 function onMove(event) {
+    active = performance.now();
     const dense = window.devicePixelRatio || 1, before = pointers.get(event.pointerId), at = placeOf(event);
     if (document.pointerLockElement)
         send(MOTION, { ...at, dx: event.movementX * dense, dy: event.movementY * dense });
@@ -106,94 +124,83 @@ function onDrop(event) {
     openFile(event.dataTransfer.files[0]);
 }
 
-function openFile(file) {
-    if (file)
-        openScene(async () => ({ name: file.name, stream: file.stream(), total: file.size }));
+// ---- The state is shown. ----
+
+const IDLE_MS = 2500;
+let active = 0;                 // time of the last input
+let seconds = '';
+
+/** The controls fade while it plays and there is no input. */
+function showIdle() {
+    const bar = $('bar'), busy = performance.now() - active < IDLE_MS || bar.matches(':hover') || bar.querySelector(':focus-visible');
+    $('stage').classList.toggle('idle', !busy && page.playing && document.querySelector('.panel:not([hidden])') === null);
 }
 
-// ---- Texts next to the image. ----
-
-function showHelp() {
-    const lines = view.text(view.call.view_help_lines()).trim().split('\n').map(line => line.split('\t'));
-    const table = element('table');
-    const touch = [['one finger', 'orbit'], ['two fingers', 'pan, zoom']];
-    for (const [keys, text] of lines.concat(touch))
-        rowOf(table, '', element('td', keys), element('td', keys === 'p' ? 'screenshot' : text));
-    table.querySelectorAll('th').forEach(cell => cell.remove());
-    $('help').replaceChildren(table);
-}
-
-function statisticsText() {
-    const call = view.call, drawn = page.drawn, fast = page.fast;
-    const ms = value => (value || 0).toFixed(1);
-    const threads = drawn ? drawn.threads : 1;
-    return [`module  ${page.module}, ${threads} thread${threads > 1 ? 's' : ''}`,
-            `exact   ${drawn ? `${ms(drawn.ms)} ms, ${drawn.width}x${drawn.height}` : '-'}`,
-            gpu ? `gpu     pack ${ms(fast.packMs)}, sort ${ms(fast.sortMs)}, draw ${ms(fast.drawMs)} ms` : 'gpu     none',
-            `splats  ${fast.n || page.facts.gaussians}`,
-            `layers  ${call.view_layers()}`,
-            `time    ${call.view_time().toFixed(3)} s, frame ${call.view_frame()} of ${call.view_frames()}`,
-            `speed   ${call.view_factor()}x${call.view_loop() ? ', loop' : ''}${call.view_flying() ? ', flying' : ''}`,
-            `bytes   ${information.received}${page.total ? ` of ${page.total}` : ''}`,
-            `first   ${page.first.toFixed(0)} ms`].join('\n');
-}
-
-let messageTimer = 0;
-function showMessage() {
-    const text = view.text(view.call.view_message());
-    if (text && text !== page.message)
-        say(text);
-    clearTimeout(messageTimer);
-    if (text)
-        messageTimer = setTimeout(() => { say(''); wake(); }, 3000);
+function showTime() {
+    const call = view.call, bar = $('time'), most = Math.max(1, call.view_frames() - 1), total = page.duration;
+    bar.max = call.view_frames() - 1;
+    bar.value = call.view_frame();
+    bar.style.setProperty('--part', `${100 * call.view_frame() / most}%`);
+    const text = `${call.view_time().toFixed(2)}${isFinite(total) && total > 0 ? ` / ${page.facts.time_end.toFixed(2)}` : ''} s`;
+    if (text === seconds)
+        return;
+    seconds = text;
+    bar.setAttribute('aria-valuetext', `${call.view_time().toFixed(2)} seconds`);
+    $('clock').textContent = `${text}${call.view_waits() ? ' …' : ''}`;
 }
 
 function showControls() {
-    const open = opened();
-    for (const id of ['play', 'time', 'loop', 'reset', 'fly', 'shot', 'more', 'keys'])
-        $(id).disabled = !open;
-    if (!open)
+    if (!opened())
         return;
     const call = view.call;
-    $('time').max = call.view_frames() - 1;
-    $('time').value = call.view_frame();
-    $('clock').textContent = `${call.view_time().toFixed(2)} s${call.view_waits() ? ' …' : ''}`;
-    $('play').textContent = call.view_playing() ? '❚❚' : '▶';
+    showTime();
+    $('play').setAttribute('aria-pressed', call.view_playing() === 1);
+    $('play').disabled = $('time').disabled = call.view_frames() < 2;
     $('loop').setAttribute('aria-pressed', call.view_loop() === 1);
     $('fly').setAttribute('aria-pressed', call.view_flying() === 1);
     $('bar').hidden = !call.view_bar();
-    $('help').hidden = !call.view_help();
+    if (call.view_help() && $('help').hidden)
+        showPanel('facts', false);
+    showPanel('help', call.view_help() === 1);
     $('statistics').hidden = !call.view_statistics();
     if (call.view_statistics())
         $('statistics').textContent = statisticsText();
     if (!call.view_flying() && document.pointerLockElement)
         document.exitPointerLock();
     showMessage();
+    showIdle();
+    emitClock();
 }
 
-function listen() {
-    const stage = $('stage');
-    showHelp();
-    showControls();
-    window.addEventListener('keydown', event => onKey(event, true));
-    window.addEventListener('keyup', event => onKey(event, false));
-    window.addEventListener('blur', () => send(LOST));
-    window.addEventListener('dragover', event => { event.preventDefault(); stage.classList.add('over'); });
-    window.addEventListener('dragleave', () => stage.classList.remove('over'));
-    window.addEventListener('drop', onDrop);
+/** Where the page may not fill the screen, a frame opens it alone; a page that is alone has no button. */
+function toggleFull() {
+    if (document.fullscreenElement)
+        document.exitFullscreen();
+    else if (document.fullscreenEnabled)
+        document.documentElement.requestFullscreen().catch(() => null);
+    else
+        window.open(location.href, '_blank', 'noopener');
+}
+
+function listenToPointer(stage) {
     stage.addEventListener('pointerdown', onDown);
     stage.addEventListener('pointermove', onMove);
     stage.addEventListener('pointerup', onUp);
     stage.addEventListener('pointercancel', onUp);
-    stage.addEventListener('contextmenu', event => event.preventDefault());
+    stage.addEventListener('contextmenu', event => { if (isOnPicture(event)) event.preventDefault(); });
     stage.addEventListener('wheel', event => {
         if (!isOnPicture(event))
             return;
         event.preventDefault();
+        hideHint();
         send(WHEEL, { dy: -event.deltaY / (event.deltaMode ? 3 : WHEEL_STEP) });
     }, { passive: false });
-    new ResizeObserver(wake).observe(stage);
+}
+
+function listenToButtons() {
     $('file').addEventListener('change', event => openFile(event.target.files[0]));
+    document.querySelectorAll('.open').forEach(button => button.addEventListener('click', () => $('file').click()));
+    $('again').addEventListener('click', () => lastSource());
     $('time').addEventListener('input', event => {
         view.call.view_tick(performance.now() / 1000);
         view.call.view_seek(event.target.value / Math.max(1, event.target.max));
@@ -201,7 +208,26 @@ function listen() {
     });
     for (const [id, key] of [['play', ' '], ['loop', 'l'], ['reset', 'r'], ['fly', 'f'], ['shot', 'p'], ['keys', 'h']])
         $(id).addEventListener('click', () => { press(key.charCodeAt(0)); });
-    $('more').addEventListener('click', () => { $('facts').hidden = !$('facts').hidden; });
-    $('full').addEventListener('click', () => document.fullscreenElement ? document.exitFullscreen()
-                                                                         : document.documentElement.requestFullscreen());
+    $('more').addEventListener('click', toggleFacts);
+    $('full').hidden = !document.fullscreenEnabled && parent === window;
+    $('full').addEventListener('click', toggleFull);
+    document.addEventListener('fullscreenchange', () =>
+        $('full').setAttribute('aria-pressed', document.fullscreenElement !== null));
+}
+
+function listen() {
+    const stage = $('stage');
+    active = performance.now();
+    window.addEventListener('keydown', event => onKey(event, true));
+    window.addEventListener('keyup', event => onKey(event, false));
+    window.addEventListener('blur', () => send(LOST));
+    window.addEventListener('focusin', () => { active = performance.now(); });
+    window.addEventListener('dragover', event => { event.preventDefault(); stage.classList.add('over'); });
+    window.addEventListener('dragleave', () => stage.classList.remove('over'));
+    window.addEventListener('drop', onDrop);
+    listenToPointer(stage);
+    listenToButtons();
+    makeHelp();
+    new ResizeObserver(wake).observe(stage);
+    $('exact').setAttribute('aria-label', document.title);
 }

@@ -36,26 +36,46 @@ function bytesChart(bytes) {
     return table;
 }
 
-/** notes: missing features of this browser, and faults of the file. */
-function showFacts(into, name, facts, notes) {
+function seconds3(value) {
+    return value === null ? '…' : Number(value.toFixed(3));
+}
+
+/** For everyone: the length and the size. */
+function makeSummary(name, facts) {
     const table = element('table');
-    const seconds = value => value === null ? '…' : Number(value.toFixed(3));
+    rowOf(table, 'Scene', name);
+    if (facts.time_end > facts.time_start)
+        rowOf(table, 'Length', `${seconds3(facts.time_end - facts.time_start)} s, ${seconds3(facts.frame_rate)} frames/s`);
+    rowOf(table, 'Size', `${grouped(facts.bytes.total)} bytes`);
+    rowOf(table, 'Splats', grouped(facts.gaussians));
+    return table;
+}
+
+/** For engineers. */
+function makeDetails(facts) {
+    const table = element('table');
     const tiers = facts.tiers > 1 ? `, ${facts.tiers_present} of ${facts.tiers} tiers` : '';
-    rowOf(table, 'file', name);
     rowOf(table, 'stream', `${facts.version}, level ${facts.level}`);
-    rowOf(table, 'time', `${seconds(facts.time_start)} to ${seconds(facts.time_end)} s, ${seconds(facts.frame_rate)} frames/s`);
+    rowOf(table, 'time', `${seconds3(facts.time_start)} to ${seconds3(facts.time_end)} s`);
     const promised = facts.segments_total > facts.segments ? ` of ${facts.segments_total}` : '';
     rowOf(table, 'segments', `${facts.segments}${promised}`);
     rowOf(table, 'anchors', `${grouped(facts.anchors)} (${grouped(facts.static_anchors)} static)`);
-    rowOf(table, 'splats', grouped(facts.gaussians));
     rowOf(table, 'weights', grouped(facts.weights));
     rowOf(table, 'layers', `${facts.layers}${tiers}`);
     rowOf(table, 'cameras', String(facts.cameras));
     rowOf(table, 'colour', facts.colour);
     rowOf(table, 'axes', facts.axes);
+    return table;
+}
+
+/** notes: missing features of this browser, and faults of the file. page: its name and module. */
+function showFacts(summary, details, { name, module }, facts, notes) {
+    const table = makeDetails(facts);
+    rowOf(table, 'module', module || '…');
     for (const [key, value] of facts.metadata)
         rowOf(table, key, value);
-    into.replaceChildren(table, element('h2', 'Bytes'), bytesChart(facts.bytes));
+    summary.replaceChildren(makeSummary(name, facts));
+    details.replaceChildren(table, element('h3', 'Bytes'), bytesChart(facts.bytes));
     if (notes.length)
-        into.append(element('h2', 'Notes'), ...notes.map(note => element('div', note)));
+        details.append(element('h3', 'Notes'), ...notes.map(note => element('div', note)));
 }

@@ -73,6 +73,8 @@ class Gpu {
         this.canvas = canvas;
         this.n = 0;
         this.lost = false;
+        this.fence = null;      // of the last image
+        this.took = 0;
         canvas.addEventListener('webglcontextlost', () => { this.lost = true; });
         this.program = this.link();
         this.uniform = {};
@@ -162,6 +164,22 @@ class Gpu {
         gl.uniform1f(u.screen, filter);
         if (this.n && this.sorted === this.n)
             gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.n);
+        this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+        this.since = performance.now();
+        gl.flush();
+    }
+
+    /** Whether the last image is still being rendered. A caller that waits for it never floods a slow GPU. Sets took, in ms. */
+    busy() {
+        const gl = this.gl;
+        if (!this.fence)
+            return false;
+        if (gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED)
+            return true;
+        gl.deleteSync(this.fence);
+        this.fence = null;
+        this.took = performance.now() - this.since;
+        return false;
     }
 
     /** The last image, rows from the top. */

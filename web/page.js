@@ -6,7 +6,7 @@ const $ = id => document.getElementById(id);
 
 /** State that tests and curious users may inspect. */
 const page = window.adcgs = {
-    state: 'empty',       // empty, loading, complete, failed
+    state: 'empty',       // empty, waiting, loading, complete, failed
     module: null,         // the module that renders
     name: '', total: 0,
     facts: null, notes: [],
@@ -14,9 +14,11 @@ const page = window.adcgs = {
     pictures: 0,
     listing: false,       // check.js requests images: no others in the meantime
     opened: 0, first: 0,  // milliseconds: when a scene began to arrive, and the time until its first image
-    fast: {},             // milliseconds for the last image of the GPU: pack, sort, draw
+    fast: {},             // milliseconds for the last image of the GPU: pack, sort, draw, and until it was there
+    divider: 1,           // of the size of the GPU's images
+    adaptive: true,       // whether the divider follows the GPU's speed
     get view() { return view; },
-    get generation() { return generation; }, // of the scene's state; page.picture.generation is the rendered one
+    get generation() { return generation; }, // of the scene's state; that of the last image is in page.picture
     get gpu() { return gpu; },
 };
 
@@ -32,87 +34,12 @@ let packed = { time: null, generation: -1, direction: [0, 0, 0] };
 
 function setState(state) {
     page.state = document.documentElement.dataset.state = state;
-}
-
-function say(text) {
-    page.message = text;
-    $('message').textContent = text;
-}
-
-function fail(text) {
-    setState('failed');
-    say(text);
+    $('stage').classList.toggle('failed', state === 'failed');
 }
 
 function note(text) {
     if (!page.notes.includes(text))
         page.notes.push(text);
-}
-
-// ---- Receiving a scene. ----
-
-async function openScene(getSource) {
-    const number = ++reading, ours = new Flow(AHEAD);
-    flow.end();
-    flow = ours;
-    setState('loading');
-    say('');
-    information = null;
-    shownKey = '';
-    Object.assign(page, { name: '', total: 0, facts: null, picture: null, drawn: null, first: 0, opened: performance.now() });
-    page.notes = page.notes.filter(text => !text.startsWith('file: '));
-    worker.postMessage({ kind: 'open', number });
-    try {
-        const source = await getSource();
-        Object.assign(page, { name: source.name, total: source.total || 0 });
-        await readStream(source.stream, ours, bytes => {
-            if (number === reading)
-                worker.postMessage({ kind: 'bytes', bytes }, [bytes.buffer]);
-        });
-    } catch (e) {
-        if (number === reading)
-            note('file: ' + e.message);
-    }
-    if (number === reading)
-        worker.postMessage({ kind: 'end' });
-}
-
-/** Take a report of the worker. The view gets copies of the data that the worker's instance found. */
-function takeReport(report) {
-    const first = information === null || !information.home;
-    information = report;
-    page.facts = report.facts || null;
-    generation++;
-    if (report.home) {
-        const over = report.ended ? 1 : 0, { info, home, cameras } = report;
-        if (first)
-            view.with([info, home, cameras], (i, h, c) => view.call.view_open(i, h, c, over));
-        else
-            view.with([info], i => view.call.view_span(i, over));
-    }
-    if (report.ended)
-        finish(report);
-    $('empty').hidden = true;
-    showControls();
-    if (page.facts)
-        showFacts($('facts'), page.name, page.facts, page.notes);
-    wake();
-}
-
-function finish(report) {
-    if (report.failed)
-        note('file: ' + report.failed);
-    if (report.fault && report.fault !== report.failed)
-        note('file: ' + report.fault);
-    const wrong = page.notes.filter(text => text.startsWith('file: ')).map(text => text.slice(6));
-    if (!report.drawable)
-        fail(`${page.name || 'stream'}: ${wrong[0] || 'ends before anything can be rendered'}`);
-    else if (report.failed || (report.facts && report.facts.faults))
-        say(`${page.name}: damaged; showing the intact parts (${wrong[0]})`);
-    else if (report.facts && report.facts.truncated)
-        say(`${page.name}: ends early; showing the complete part`);
-    if (report.drawable)
-        setState('complete');
 }
 
 // ---- Requesting images. ----
@@ -143,9 +70,21 @@ function ask(exact) {
                          camera, time, tiers: exact ? 0 : view.call.view_tiers(), digest: exact, exact, saves });
 }
 
-/** Render the current view with the GPU, from the splats packed last. */
-function drawFast() {
-    const start = performance.now(), time = view.call.view_time(), direction = directionOf(cameraOf(1));
+const SLOW_MS = 100, QUICK_MS = 25, DIVIDER_MOST = 3; // of images of the GPU
+
+/** An image that takes long makes the next ones smaller: a half of the width takes a fourth of the time. */
+function adapt() {
+    if (page.adaptive && gpu.took > SLOW_MS)
+        page.divider = Math.min(page.divider + 1, DIVIDER_MOST);
+    else if (page.adaptive && gpu.took && gpu.took < QUICK_MS)
+        page.divider = Math.max(page.divider - 1, 1);
+    page.fast.tookMs = gpu.took || page.fast.tookMs;
+    gpu.took = 0;
+}
+
+/** Request the splats of the current time, and their order for the view. */
+function requestSplats(time) {
+    const direction = directionOf(cameraOf(1));
     const turned = direction.some((d, i) => Math.abs(d - packed.direction[i]) > 1e-4);
     if (!packing && (packed.time !== time || packed.generation !== generation)) {
         packing = true;
@@ -156,18 +95,27 @@ function drawFast() {
         packed.direction = direction;
         worker.postMessage({ kind: 'sort', direction });
     }
-    const uniforms = view.call.view_uniforms();
-    if (!gpu.n || !uniforms)
+}
+
+/** Render the current view with the GPU, from the splats packed last, unless it still renders the previous image. */
+function drawFast() {
+    const start = performance.now(), time = view.call.view_time();
+    requestSplats(time);
+    if (!gpu.n || gpu.busy())
         return;
-    const camera = new DataView(cameraOf(1).buffer);
+    adapt();
+    const camera = new DataView(cameraOf(page.divider).buffer), uniforms = view.call.view_uniforms(page.divider);
+    if (!uniforms)
+        return;
     gpu.draw(view.floats(uniforms, 21), camera.getInt32(CAMERA.WIDTH, true), camera.getInt32(CAMERA.HEIGHT, true),
              page.facts.background, information.filter);
     page.fast.drawMs = performance.now() - start;
     $('fast').hidden = false;
     $('exact').style.opacity = 0;
-    $('what').textContent = `moving ${gpu.canvas.width}×${gpu.canvas.height}, by WebGL2: not exact`;
+    $('what').textContent = `Moving image ${gpu.canvas.width} × ${gpu.canvas.height}, not exact`;
     $('digest').textContent = '';
     shownKey = '';
+    showed(time, false);
 }
 
 function wake() {
@@ -227,11 +175,24 @@ function takePicture(m) {
         view.call.view_took(m.ms / 1000);
     page.drawn = { width: m.width, height: m.height, ms: m.ms, exact: m.exact, threads: m.threads };
     $('digest').textContent = m.digest;
-    $('what').textContent = `${m.exact ? 'exact' : 'moving'} ${m.width}×${m.height}, ${m.time.toFixed(3)} s, ` +
-        `${m.ms.toFixed(0)} ms by the ${page.module} module${m.digest ? '; MD5' : ''}`;
+    $('what').textContent = `${m.exact ? 'Exact' : 'Moving'} image ${m.width} × ${m.height} at ${m.time.toFixed(3)} s` +
+        `${m.digest ? ', MD5' : ''}`;
+    showed(m.time, m.exact);
     if (m.saves)
         download();
     wake();
+}
+
+/** An image is visible: the first one replaces the poster. */
+function showed(time, exact) {
+    const stage = $('stage');
+    if (!stage.classList.contains('shown')) {
+        stage.classList.add('shown');
+        active = performance.now();
+        showHint();
+        emit('ready', { duration: page.duration, cameras: page.cameras, title: document.title });
+    }
+    emit('frame', { time, exact });
 }
 
 function download() {
@@ -268,8 +229,10 @@ function onReply(m) {
     case 'splats':
     case 'sorted': takeSplats(m); break;
     case 'taken':
-        if (m.number === reading)
+        if (m.number === reading) {
             flow.take(m.taken);
+            showProgress(m.taken, page.total);
+        }
         if (m.number === reading && m.enough)
             flow.end();
         break;
@@ -279,39 +242,3 @@ function onReply(m) {
         break;
     }
 }
-
-// ---- Start. ----
-
-async function start() {
-    const modules = { relaxed: await unpack('relaxed'), exact: await unpack('exact-module') };
-    const which = chooseModule(modules, null);
-    if (!which)
-        throw new Error('this browser has no WebAssembly with SIMD: nothing can be rendered');
-    if (which === 'exact')
-        note('no relaxed SIMD: the exact module renders, about five times slower');
-    view = await Engine.create(modules[which]);
-    worker = new Worker(URL.createObjectURL(new Blob([$('worker-text').textContent], { type: 'text/javascript' })));
-    worker.onmessage = event => onReply(event.data);
-    worker.onerror = event => fail(`worker: ${event.message}`);
-    const parameters = new URLSearchParams(location.search);
-    if (parameters.get('module') === 'exact')
-        delete modules.relaxed;
-    worker.postMessage({ kind: 'modules', modules, threads: Number(parameters.get('threads')) });
-    try {
-        if (parameters.get('draw') === 'exact')
-            throw new Error('draw=exact');
-        gpu = new Gpu($('fast'));
-    } catch (e) {
-        dropGpu(e.message);
-    }
-    listen();
-    const embedded = embeddedScene(), source = parameters.get('src');
-    if (source)
-        openScene(() => sceneAt(source));
-    else if (embedded)
-        openScene(async () => embedded);
-    if (parameters.has('md5'))
-        listDigests(Number(parameters.get('md5')) || 1);
-}
-
-window.addEventListener('DOMContentLoaded', () => start().catch(e => fail(e.message)));

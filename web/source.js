@@ -63,7 +63,10 @@ async function readStream(stream, flow, take) {
 
 function embeddedScene() {
     const scene = document.getElementById('scene');
-    return scene && { name: scene.dataset.name || 'scene', stream: new Blob([fromBase64(scene.textContent)]).stream() };
+    if (!scene)
+        return null;
+    const bytes = fromBase64(scene.textContent);
+    return { name: scene.dataset.name || 'scene', stream: new Blob([bytes]).stream(), total: bytes.length };
 }
 
 async function sceneAt(url) {

@@ -6,7 +6,7 @@
 #include "io/atomic.h"
 #include "io/file.h"
 #include "io/kind.h"
-#include "tools/share_page.h"
+#include "tools/share_poster.h"
 
 #include <adcgs/adcgs.h>
 
@@ -17,18 +17,56 @@
 
 typedef struct settings {
     const adcgs_cli *cli;
-    const char *output, *title, *page;
-    int quiet;
+    const char *output, *title, *credit, *camera, *poster, *background, *image, *page;
+    double time;
+    int has_time, loop, quiet;
 } settings;
 
 /** The contents of a page. */
 typedef struct parts {
     uint8_t *page, *stream;
     size_t page_bytes, stream_bytes;
+    adcgs_share_scene scene;
 } parts;
 
+static const char *const on_off[] = {"on", "off", NULL};
+
+/** Checks the texts that have a form of their own. */
+static adcgs_status check_settings(const settings *s, const char *path, adcgs_error *error)
+{
+    const char *needs = s->camera                                ? "--camera"
+                        : s->has_time                            ? "--time"
+                        : s->poster && strcmp(s->poster, "none") ? "--poster"
+                                                                 : NULL;
+    if (!path && needs)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: needs a scene: name its FILE", needs);
+    const char *colour = s->background;
+    if (colour && (*colour != '#' || strlen(colour) != 7 || strspn(colour + 1, "0123456789abcdefABCDEF") != 6))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--background %.40s: expected a colour as #rrggbb", colour);
+    if (s->image && strncmp(s->image, "https://", 8) && strncmp(s->image, "http://", 7))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--image %.100s: expected an address that begins with https://", s->image);
+    return ADCGS_OK;
+}
+
+/** Finds the first view, and renders or loads the poster. */
+static adcgs_status prepare_view(const settings *s, adcgs_share_scene *scene, const adcgs_info *info, adcgs_decoder *decoder,
+                                 adcgs_error *error)
+{
+    if (s->camera)
+        ADCGS_TRY(adcgs_share_find_camera(&scene->camera, decoder, s->camera, error));
+    if (s->has_time && (s->time < info->time_start || s->time > info->time_end))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %g: the stream lasts from %g to %g s", s->time, info->time_start,
+                          info->time_end);
+    if (s->poster)
+        return strcmp(s->poster, "none") ? adcgs_share_load_poster(scene, s->poster, error) : ADCGS_OK;
+    const adcgs_status status = adcgs_share_render_poster(scene, decoder, error);
+    if (status != ADCGS_OK && status != ADCGS_ERR_MEMORY) /* the page may still show other views and times */
+        adcgs_cli_note(s->cli, "no poster: %s", error->text);
+    return status == ADCGS_ERR_MEMORY ? status : ADCGS_OK;
+}
+
 /** Refuses a damaged stream, since viewers of the page cannot fix it. */
-static adcgs_status check_stream(const settings *s, const char *path, const parts *p, adcgs_error *error)
+static adcgs_status prepare_scene(const settings *s, const char *path, parts *p, adcgs_error *error)
 {
     adcgs_decoder *decoder;
     adcgs_info info;
@@ -38,9 +76,11 @@ static adcgs_status check_stream(const settings *s, const char *path, const part
         return status;
     }
     status = adcgs_get_info(decoder, &info, sizeof info, error);
-    adcgs_close(&decoder);
     if (status == ADCGS_OK && info.truncated)
         adcgs_cli_note(s->cli, "%s: the stream ends early; the page will show its complete part", path);
+    if (status == ADCGS_OK)
+        status = prepare_view(s, &p->scene, &info, decoder, error);
+    adcgs_close(&decoder);
     return status;
 }
 
@@ -56,41 +96,54 @@ static adcgs_status load_page(parts *p, const char *path, adcgs_error *error)
 
 static adcgs_status write_page(const settings *s, const char *path, const parts *p, adcgs_error *error)
 {
-    const adcgs_share_scene scene = {.name = path, .title = s->title, .data = p->stream, .bytes = p->stream_bytes};
     adcgs_atomic out;
     ADCGS_TRY(adcgs_share_check_page(p->page, p->page_bytes, s->page, error));
     ADCGS_TRY(adcgs_atomic_open(&out, s->output, error));
-    adcgs_share_write(out.file, (const char *)p->page, p->page_bytes, &scene);
+    adcgs_share_write(out.file, (const char *)p->page, p->page_bytes, &p->scene);
     const long bytes = ftell(out.file);
     ADCGS_TRY(adcgs_atomic_commit(&out, error));
     if (path)
-        adcgs_cli_note(s->cli, "%s: %ld bytes, with a scene of %zu bytes", s->output, bytes, p->stream_bytes);
+        adcgs_cli_note(s->cli, "%s: %ld bytes, with a scene of %zu bytes and a poster of %zu", s->output, bytes, p->stream_bytes,
+                       p->scene.poster.bytes);
     else
         adcgs_cli_note(s->cli, "%s: %ld bytes, without a scene: it shows dropped files, and the stream of ?src=URL", s->output,
                        bytes);
     return ADCGS_OK;
 }
 
+static adcgs_status make_page(const settings *s, const char *path, parts *p, adcgs_error *error)
+{
+    if (path) {
+        ADCGS_TRY(adcgs_kind_check(path, ADCGS_WANT_STREAM, error));
+        ADCGS_TRY(adcgs_file_load(&p->stream, &p->stream_bytes, path, STREAM_BYTES_MAX, error));
+        p->scene.data = p->stream;
+        p->scene.bytes = p->stream_bytes;
+        ADCGS_TRY(prepare_scene(s, path, p, error));
+    }
+    ADCGS_TRY(load_page(p, s->page, error));
+    return write_page(s, path, p, error);
+}
+
 static adcgs_status share(const settings *s, const char *path, adcgs_error *error)
 {
-    parts p = {0};
-    adcgs_status status = ADCGS_OK;
+    parts p = {.scene = {.name = path,
+                         .title = s->title,
+                         .credit = s->credit,
+                         .background = s->background,
+                         .image = s->image,
+                         .camera = -1,
+                         .has_time = s->has_time,
+                         .time = s->time,
+                         .is_once = s->loop}};
     if (!s->output)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "no output: give -o PAGE.html");
     if (path && adcgs_atomic_same(path, s->output))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: the page would replace the stream: give another output", path);
-    if (path)
-        status = adcgs_kind_check(path, ADCGS_WANT_STREAM, error);
-    if (status == ADCGS_OK && path)
-        status = adcgs_file_load(&p.stream, &p.stream_bytes, path, STREAM_BYTES_MAX, error);
-    if (status == ADCGS_OK && path)
-        status = check_stream(s, path, &p, error);
-    if (status == ADCGS_OK)
-        status = load_page(&p, s->page, error);
-    if (status == ADCGS_OK)
-        status = write_page(s, path, &p, error);
+    ADCGS_TRY(check_settings(s, path, error));
+    const adcgs_status status = make_page(s, path, &p, error);
     free(p.page);
     free(p.stream);
+    free(p.scene.poster.data);
     return status;
 }
 
@@ -108,7 +161,48 @@ int main(int argc, char **argv)
          .kind = ADCGS_OPTION_STRING,
          .target = &s.title,
          .value = "TEXT",
-         .help = "title of the page (default: the file's name)"},
+         .help = "title of the page (default: the file's name without its ending)"},
+        {.name = "credit",
+         .kind = ADCGS_OPTION_STRING,
+         .target = &s.credit,
+         .value = "TEXT",
+         .help = "line below the title: who made it"},
+        {.name = "camera",
+         .letter = 'c',
+         .kind = ADCGS_OPTION_STRING,
+         .target = &s.camera,
+         .value = "NAME|INDEX",
+         .help = "stored camera of the first view"},
+        {.name = "time",
+         .letter = 't',
+         .kind = ADCGS_OPTION_SECONDS,
+         .target = &s.time,
+         .min = -1e9,
+         .max = 1e9,
+         .given = &s.has_time,
+         .value = "TIME",
+         .help = "time of the first frame (default: the stream's first)"},
+        {.name = "poster",
+         .kind = ADCGS_OPTION_FILE,
+         .target = &s.poster,
+         .value = "FILE|none",
+         .help = "JPEG or PNG image to show until the scene plays\n(default: the first frame, rendered)"},
+        {.name = "loop",
+         .kind = ADCGS_OPTION_CHOICE,
+         .target = &s.loop,
+         .choices = on_off,
+         .value = "on|off",
+         .help = "whether the scene plays in a loop"},
+        {.name = "background",
+         .kind = ADCGS_OPTION_STRING,
+         .target = &s.background,
+         .value = "#rrggbb",
+         .help = "colour of the page around the image"},
+        {.name = "image",
+         .kind = ADCGS_OPTION_STRING,
+         .target = &s.image,
+         .value = "URL",
+         .help = "image that a link to the page shows (default: the poster,\nwhich few services read from the page itself)"},
         {.name = "page",
          .kind = ADCGS_OPTION_STRING,
          .target = &s.page,

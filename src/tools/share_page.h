@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Puts a scene into the page for browsers. */
+/** \file Writes the page for browsers with a scene, its texts and its poster. */
 #ifndef ADCGS_TOOLS_SHARE_PAGE_H
 #define ADCGS_TOOLS_SHARE_PAGE_H
 
@@ -7,14 +7,30 @@
 
 #include <stdio.h>
 
+/** The image that the page shows before the decoder starts: a file's bytes. */
+typedef struct adcgs_share_poster {
+    uint8_t *data; /**< from malloc(); NULL: no poster */
+    size_t bytes;
+    int width, height;
+    const char *type; /**< "image/jpeg" */
+} adcgs_share_poster;
+
 typedef struct adcgs_share_scene {
-    const char *name;  /**< of the scene's file; NULL: no scene */
-    const char *title; /**< of the page; NULL: the name without its folder */
+    const char *name;       /**< of the scene's file; NULL: no scene */
+    const char *title;      /**< NULL: the name without its folder and its ending */
+    const char *credit;     /**< who made it; or NULL */
+    const char *background; /**< colour of the page, #rrggbb; NULL: the page's own */
+    const char *image;      /**< address of the image for links to the page; NULL: the poster itself */
+    int camera;             /**< index of the stored camera of the first view; -1: as in the player */
+    int has_time;
+    double time; /**< of the first frame, seconds */
+    int is_once; /**< true: the page does not play in a loop */
     const uint8_t *data;
     size_t bytes;
+    adcgs_share_poster poster;
 } adcgs_share_scene;
 
-/** ADCGS_ERR_DATA if the page has no place for a scene and a title. path is for messages. */
+/** ADCGS_ERR_DATA if the page lacks one of the places that the scene needs. path is for messages. */
 adcgs_status adcgs_share_check_page(const uint8_t *page, size_t bytes, const char *path, adcgs_error *error);
 /** Writes a checked page. Errors stay with the file. */
 void adcgs_share_write(FILE *file, const char *page, size_t bytes, const adcgs_share_scene *scene);

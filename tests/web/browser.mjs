@@ -5,6 +5,9 @@
 //   const browser = await openBrowser('chromium' or 'firefox', command, folder for its profile, { width, height });
 //   await browser.go(url); await browser.run('script, which may return a promise'); await browser.shot('file.png');
 //   await browser.close();
+//
+// More options: flags of the command (Chromium), reduced (the user prefers less motion), phone (touch, Chromium). browser.messages
+// has the messages of the console (Chromium).
 import { spawn } from 'node:child_process';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
@@ -51,27 +54,36 @@ async function stop(process, ask) {
     clearTimeout(timer);
 }
 
-async function openChromium(command, profile, { width, height, flags = [] }) {
+async function openChromium(command, profile, { width, height, flags = [], reduced, phone }) {
     const process = spawn(command, ['--headless', '--remote-debugging-pipe', '--no-sandbox', '--no-first-run',
         '--disable-dev-shm-usage',
-        `--user-data-dir=${profile}`, `--window-size=${width},${height}`, ...flags, 'about:blank'],
+        `--user-data-dir=${profile}`, `--window-size=${width},${height}`, ...flags,
+        ...reduced ? ['--force-prefers-reduced-motion'] : [], 'about:blank'],
     { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'] });
-    const questions = new Questions();
+    const questions = new Questions(), messages = [];
     let rest = '';
     process.stdio[4].setEncoding('utf8');
     process.stdio[4].on('data', data => {
         const parts = (rest + data).split('\0');
         rest = parts.pop();
-        for (const message of parts.map(part => JSON.parse(part)))
+        for (const message of parts.map(part => JSON.parse(part))) {
             questions.answer(message.id, message.error && new Error(message.error.message), message.result);
+            if (['Log.entryAdded', 'Runtime.consoleAPICalled', 'Runtime.exceptionThrown'].includes(message.method))
+                messages.push(JSON.stringify(message.params));
+        }
     });
     process.stdio[3].on('error', () => null);
     const ask = (method, params = {}, sessionId) =>
         questions.ask(id => process.stdio[3].write(JSON.stringify({ id, method, params, sessionId }) + '\0'));
     const { targetId } = await ask('Target.createTarget', { url: 'about:blank' });
     const { sessionId } = await ask('Target.attachToTarget', { targetId, flatten: true });
-    await ask('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: false }, sessionId);
+    await ask('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: Boolean(phone) },
+              sessionId);
+    await ask('Emulation.setTouchEmulationEnabled', { enabled: Boolean(phone) }, sessionId);
+    await ask('Log.enable', {}, sessionId);
+    await ask('Runtime.enable', {}, sessionId);
     return {
+        messages,
         go: url => ask('Page.navigate', { url }, sessionId),
         async run(script) {
             const { result, exceptionDetails } = await ask('Runtime.evaluate',
@@ -88,9 +100,10 @@ async function openChromium(command, profile, { width, height, flags = [] }) {
     };
 }
 
-async function openFirefox(command, profile, { width, height }) {
+async function openFirefox(command, profile, { width, height, reduced }) {
     const settings = { 'marionette.port': 0, 'browser.shell.checkDefaultBrowser': false, 'app.update.enabled': false,
-                       'datareporting.policy.dataSubmissionEnabled': false, 'webgl.force-enabled': true };
+                       'datareporting.policy.dataSubmissionEnabled': false, 'webgl.force-enabled': true,
+                       'ui.prefersReducedMotion': reduced ? 1 : 0 };
     writeFileSync(join(profile, 'user.js'),
                   Object.entries(settings).map(([name, value]) => `user_pref("${name}", ${value});\n`).join(''));
     const process = spawn(command, ['--headless', '--no-remote', '--marionette', '--profile', profile], { stdio: 'ignore' });
@@ -128,6 +141,7 @@ async function openFirefox(command, profile, { width, height }) {
     await ask('WebDriver:SetTimeouts', { script: ANSWER_MS });
     await ask('WebDriver:SetWindowRect', { width, height: height + 85 });
     return {
+        messages: [],
         go: url => ask('WebDriver:Navigate', { url }),
         async run(script) {
             const body = `const done = arguments[arguments.length - 1];

@@ -20,7 +20,7 @@ const until = `const until = async (what, why) => {
 mkdirSync(profile);
 const browser = await openBrowser(kind, command, profile, { width: 800, height: 600, flags: ['--enable-unsafe-swiftshader'] });
 try {
-    await browser.go(url(''));
+    await browser.go(url('?autoplay=0'));
     const played = await browser.run(`${until}
         await until(() => window.adcgs && adcgs.state === 'complete' && adcgs.picture, 'image');
         const first = adcgs.view.call.view_frame();

@@ -1,79 +1,13 @@
 // SPDX-License-Identifier: BSD-2-Clause
 // The page in a browser, compared with the programs: node page.mjs chromium|firefox COMMAND FOLDER [full]; in the build folder.
 // FOLDER has s.adcgs, cut.adcgs, stub.adcgs (its first layer is cut off), bad.adcgs, share.html (with s.adcgs in it) and
-// player.html. Prints the differences; exits with 1 if there are any.
-import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync } from 'node:fs';
+// player.html. Prints the differences; exits with 1 if there are any. Pages here do not play at once.
+import { readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
-import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
-import { openBrowser } from './browser.mjs';
+import * as kit from './page_kit.mjs';
+import { at, check, full, go, kind, native, restart, run, runParts, same, samePicture, shot, withServer } from './page_kit.mjs';
 
-const [kind, command, folder, full] = process.argv.slice(2);
-const shots = process.env.ADCGS_SHOTS; // a folder for screenshots
-let failed = 0;
-
-function check(condition, text) {
-    if (!condition) {
-        console.log(`FAILED: ${kind}: ${text}`);
-        failed = 1;
-    }
-}
-
-function same(got, expected, text) {
-    const [a, b] = [got, expected].map(value => JSON.stringify(value));
-    check(a === b, `${text}: ${a}, expected ${b}`);
-}
-
-const native = (...options) =>
-    execFileSync('./adcgs-dec', ['--quiet', '--md5', ...options], { encoding: 'utf8' }).trim().split('\n');
-const at = name => join(folder, name);
-const urlOf = (name, query = '') => pathToFileURL(at(name)).href + query;
-
-const HELPERS = `
-const sleep = ms => new Promise(done => setTimeout(done, ms));
-const until = async (what, why) => {
-    for (let i = 0; i < 3000; i++) {
-        if (what())
-            return;
-        await sleep(20);
-    }
-    throw new Error('no ' + why + ': ' + JSON.stringify(adcgs.state) + ' ' + adcgs.message + ' ' + JSON.stringify(adcgs.notes));
-};
-const isLast = () => adcgs.picture && adcgs.picture.generation === adcgs.generation;
-const settled = () => until(() => adcgs.state === 'failed' || (adcgs.state === 'complete' && isLast()), 'image');
-const pointer = (type, x, y, id = 1, kind = 'mouse') => document.getElementById('stage').dispatchEvent(new PointerEvent(type,
-    { pointerId: id, pointerType: kind, clientX: x, clientY: y, button: 0, buttons: 1, bubbles: true }));
-Element.prototype.setPointerCapture = () => undefined; // simulated pointers cannot be captured
-const key = name => ['keydown', 'keyup'].forEach(type => document.getElementById('exact').dispatchEvent(
-    new KeyboardEvent(type, { key: name, bubbles: true, cancelable: true })));
-const drop = (bytes, name) => {
-    const files = new DataTransfer();
-    files.items.add(new File([Uint8Array.from(atob(bytes), c => c.charCodeAt(0))], name));
-    window.dispatchEvent(new DragEvent('drop', { dataTransfer: files, bubbles: true, cancelable: true }));
-};
-const report = () => {
-    const { state, message, picture, notes, module, drawn } = adcgs;
-    return { state, message, picture, notes, module, threads: drawn ? drawn.threads : 0 };
-};
-`;
-
-let browser;
-const run = script => browser.run(HELPERS + script);
-async function go(url) {
-    await browser.go(url);
-    await run(`await until(() => window.adcgs && (adcgs.view || adcgs.state === 'failed'), 'page');`);
-}
-async function shot(name) {
-    if (shots)
-        await browser.shot(join(shots, `${kind}-${name}.png`));
-}
-
-/** Compares the page's exact image with the program's. */
-function samePicture(picture, file, text, ...options) {
-    const time = String(picture.time);
-    same(picture.digest, native(file, '--time', time, '--size', `${picture.width}x${picture.height}`, ...options)[0], text);
-}
+const urlOf = (name, query = '?') => kit.urlOf(name, `${query}&autoplay=0`);
 
 async function digests() {
     const expected = native(at('s.adcgs')), n = full ? expected.length : 3;
@@ -131,6 +65,7 @@ async function gpu() {
     const result = await run(`await settled();
         if (!adcgs.gpu)
             return { none: adcgs.notes.join() };
+        adcgs.adaptive = false;
         pointer('pointerdown', 300, 200);
         for (let i = 0; i < 8; i++) {
             pointer('pointermove', 300 + 4 * i, 200 + i);
@@ -180,42 +115,6 @@ async function dropped() {
     }
 }
 
-/** A server that sends the stream in small pieces. It may isolate pages, and change their content. */
-function serve(headers = {}, edit = text => text) {
-    const server = createServer((request, response) => {
-        const name = new URL(request.url, 'http://host').pathname.slice(1);
-        if (name.endsWith('.html')) {
-            response.writeHead(200, { 'content-type': 'text/html', ...headers });
-            response.end(edit(readFileSync(at(name), 'utf8')));
-        } else if (name === 's.adcgs') {
-            const data = readFileSync(at(name));
-            let sent = 0;
-            const more = () => {
-                if (sent >= data.length)
-                    return response.end();
-                response.write(data.subarray(sent, sent += Math.ceil(data.length / 40)));
-                setTimeout(more, 60);
-            };
-            response.setHeader('content-length', data.length);
-            more();
-        } else {
-            response.statusCode = 404;
-            response.end();
-        }
-    });
-    return new Promise(resolve => server.listen(0, '127.0.0.1', () => resolve(server)));
-}
-
-async function withServer(use, ...options) {
-    const server = await serve(...options);
-    try {
-        await use(`http://127.0.0.1:${server.address().port}`);
-    } finally {
-        server.close();
-        server.closeAllConnections();
-    }
-}
-
 const ISOLATED = { 'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp' };
 
 /** Images at both ends of the time bar equal the program's, once the given number of threads runs. */
@@ -243,7 +142,7 @@ async function drawnBy(url, threads, text) {
 
 /** Threads: if the server's headers allow them, one for each processor, or the number in the address; otherwise one. */
 async function threads() {
-    const page = 'share.html?draw=exact';
+    const page = 'share.html?draw=exact&autoplay=0';
     await withServer(async host => {
         const got = await drawnBy(`${host}/${page}&threads=3`, 3, 'isolated');
         same([got.isolated, got.module], [true, 'relaxed'], 'isolated, and the module');
@@ -268,7 +167,7 @@ async function threads() {
 
 async function served() {
     await withServer(async host => {
-        await go(`${host}/player.html?src=s.adcgs`);
+        await go(`${host}/player.html?src=s.adcgs&autoplay=0`);
         const early = await run(`await until(() => adcgs.pictures > 0, 'image'); return report();`);
         same(early.state, 'loading', 'an image while the stream arrives');
         const late = await run('await settled(); await sleep(300); return { pictures: adcgs.pictures, ...report() };');
@@ -301,7 +200,7 @@ async function endless(start, mibMost, see) {
         return more();
     });
     await new Promise(done => server.listen(0, '127.0.0.1', done));
-    await go(`http://127.0.0.1:${server.address().port}/player.html?src=endless.adcgs`);
+    await go(`http://127.0.0.1:${server.address().port}/player.html?src=endless.adcgs&autoplay=0`);
     await see(await run('await settled(); return report();'));
     await hungUp;
     server.close();
@@ -343,8 +242,7 @@ async function withoutGpu() {
 
 /** At the width of a phone, with touch. */
 async function phone() {
-    await browser.close();
-    browser = await open(360, 640);
+    await restart(360, 640);
     await go(urlOf('share.html'));
     const got = await run(`await settled();
         const wide = document.documentElement.scrollWidth > innerWidth, n = adcgs.pictures, place = adcgs.picture.digest;
@@ -365,8 +263,7 @@ async function phone() {
 async function notFused() {
     if (kind !== 'chromium')
         return;
-    await browser.close();
-    browser = await open(800, 600, ['--js-flags=--no-enable-fma3']);
+    await restart(800, 600, { flags: ['--js-flags=--no-enable-fma3'] });
     await go(urlOf('share.html', '?md5=2'));
     const got = await run(`await until(() => document.querySelector('#digests')?.dataset.done, 'digests');
         return { text: document.getElementById('digests').textContent.trim().split('\\n'), module: adcgs.module };`);
@@ -375,20 +272,5 @@ async function notFused() {
         same(got.module, 'exact', 'the module where relaxed SIMD does not fuse');
 }
 
-let profiles = 0;
-function open(width, height, flags = []) {
-    const profile = at(`profile-${kind}-${++profiles}`);
-    mkdirSync(profile);
-    return openBrowser(kind, command, profile, { width, height, flags: ['--enable-unsafe-swiftshader', ...flags] });
-}
-
-browser = await open(800, 600);
-try {
-    const parts = full ? [digests, controls, gpu, dropped, served, bodiesWithoutEnd, threads, withoutGpu, phone, notFused]
-                       : [digests, controls, dropped, bodiesWithoutEnd, threads];
-    for (const part of parts)
-        await part().catch(e => check(false, `${part.name}: ${e.message}`));
-} finally {
-    await browser.close();
-}
-process.exitCode = failed;
+await runParts(full ? [digests, controls, gpu, dropped, served, bodiesWithoutEnd, threads, withoutGpu, phone, notFused]
+                    : [digests, controls, dropped, bodiesWithoutEnd, threads]);

@@ -14,6 +14,8 @@ chromium=${ADCGS_CHROMIUM-$(command -v chromium)} firefox=${ADCGS_FIREFOX-$(comm
 tiny_stream 40
 ./adcgs-share -q --page "$page" "$dir/s.adcgs" -o "$dir/share.html" || bad "adcgs-share"
 ./adcgs-share -q --page "$page" -o "$dir/player.html" || bad "adcgs-share without a scene"
+evil='</script></title>"'"'"'--><script>evil=1</script><img src=x onerror=evil=1>&\'
+./adcgs-share -q --page "$page" "$dir/s.adcgs" -o "$dir/evil.html" --title "$evil" --credit "$evil" || bad "adcgs-share --title"
 bytes=$(wc -c <"$dir/s.adcgs")
 head -c $((bytes * 3 / 4)) "$dir/s.adcgs" >"$dir/cut.adcgs"
 cp "${srcdir:-.}/conformance/vectors/good-unit-truncated-layer-0.adcgs" "$dir/stub.adcgs"
@@ -25,7 +27,9 @@ export HOME=$dir XDG_CONFIG_HOME=$dir/config XDG_CACHE_HOME=$dir/cache
 for kind in chromium firefox; do
     command=${!kind}
     [ -n "$command" ] || { echo "skipped: the page in $kind: not installed"; continue; }
-    "$node" "${srcdir:-.}/tests/web/page.mjs" $kind "$command" "$dir" ${ADCGS_FULL:+full} || bad "$kind"
+    for script in first page; do
+        "$node" "${srcdir:-.}/tests/web/$script.mjs" $kind "$command" "$dir" ${ADCGS_FULL:+full} || bad "$script in $kind"
+    done
     [ -n "${ADCGS_FULL-}" ] || break
 done
 exit $failed

@@ -13,15 +13,23 @@ share() { ./adcgs-share --page "$page" "$@"; }
 # scene PAGE: the scene in it.
 scene() { sed -n '/<script type="text\/plain" id="scene"/,/<\/script>/p' "$1" | sed '1d;$d' | base64 -d; }
 
-# The page is the page without a scene, with the scene in its place and a title.
+# The page is the page without a scene, with the scene, a title, a card and a poster in their places.
 expect 0 "p.html: [0-9]* bytes, with a scene of $(wc -c <"$stream") bytes" share "$stream" -o "$dir/p.html"
 scene "$dir/p.html" | cmp - "$stream" || bad "the scene is another one"
-grep -q '<title>good-tiers-slices.adcgs</title>' "$dir/p.html" || bad "the title"
+grep -q '<title>good-tiers-slices</title>' "$dir/p.html" || bad "the title"
 grep -q 'data-name="good-tiers-slices.adcgs"' "$dir/p.html" || bad "the name"
-sed -e 's#<title>good-tiers-slices.adcgs<#<title>adcgs<#' \
-    -e '/<script type="text\/plain" id="scene"/,/<\/script>/c\<!-- scene -->' "$dir/p.html" |
-    cmp - "$page" || bad "more than the scene and the title differs"
-! grep -n -E '(src|href) *= *"|@import|https?://' "$page" || bad "the page refers to something outside"
+# bare PAGE: the page without what adcgs-share put into it.
+bare()
+{
+    sed -e 's#^<title>.*</title>$#<title>adcgs</title>#' -e '/^<meta name="description"/,/^<script type="application\/json"/c\<!-- card -->' \
+        -e '/^<svg id="backdrop"/,/^<header id="card">/c\<!-- poster -->' \
+        -e '/<script type="text\/plain" id="scene"/,/<\/script>/c\<!-- scene -->' "$1"
+}
+bare "$dir/p.html" | cmp - "$page" || bad "more than a scene and its texts differs"
+! sed 's#http://www.w3.org/2000/svg##' "$page" | grep -n -E '(src|href) *= *"[^#d]|href="d[^a]|@import|https?://' ||
+    bad "the page refers to something outside"
+[ "$(wc -c <"$page")" -le 650000 ] || bad "the page has $(wc -c <"$page") bytes"
+
 # Lengths with each kind of padding.
 for cut in 0 1 2; do
     head -c $(($(wc -c <"$stream") - cut)) "$stream" >"$dir/cut$cut.adcgs"
@@ -34,17 +42,61 @@ grep -q 'ends early' "$dir/err" || bad "nothing is said of a stream that ends ea
 cp "$stream" "$dir/<b>\"&.adcgs"
 expect 0 "" share "$dir/<b>\"&.adcgs" -o "$dir/p.html"
 grep -q 'data-name="&lt;b&gt;&quot;&amp;.adcgs"' "$dir/p.html" || bad "a name that is markup"
-expect 0 "" share "$stream" -o "$dir/p.html" --title '</title><script>alert(1)</script>'
-grep -q '<title>&lt;/title&gt;&lt;script&gt;alert(1)&lt;/script&gt;</title>' "$dir/p.html" || bad "a title that is markup"
+evil='</title></script>"--><script>alert(1)</script>&\'
+expect 0 "" share "$stream" -o "$dir/p.html" --title "$evil" --credit "$evil"
+grep -q '^<title>&lt;/title&gt;&lt;/script&gt;&quot;--&gt;&lt;script&gt;alert(1)&lt;/script&gt;&amp;\\</title>$' "$dir/p.html" ||
+    bad "a title that is markup"
+! grep -q '<script>alert' "$dir/p.html" || bad "a text that is a script"
+bare "$dir/p.html" | cmp - "$page" || bad "a text that ends its place"
+# settings PAGE: what the page's script reads.
+settings() { sed -n 's#^<script type="application/json" id="settings">\(.*\)</script>$#\1#p' "$1"; }
+"${PYTHON-python3}" - "$evil" "$(settings "$dir/p.html")" <<'END' || bad "settings: $(settings "$dir/p.html")"
+import json, sys
+assert json.loads(sys.argv[2]) == {"title": sys.argv[1], "credit": sys.argv[1], "loop": True}
+assert "<" not in sys.argv[2] and ">" not in sys.argv[2]
+END
+
+# The texts, the first view, the poster and the colour.
+cameras=$vectors/good-sys-cams.adcgs
+expect 0 "" share "$cameras" -o "$dir/p.html" --title Title --credit Credit --camera 0 --time 0 --loop off --background '#102030' \
+    --image https://example.org/a.jpg
+[ "$(settings "$dir/p.html")" = '{"title":"Title","credit":"Credit","camera":0,"time":0,"loop":false}' ] ||
+    bad "settings: $(settings "$dir/p.html")"
+for text in '<meta property="og:title" content="Title">' '<meta property="og:image" content="https://example.org/a.jpg">' \
+    '<meta name="theme-color" content="#102030">' '<style>:root { --background: #102030; }</style>' \
+    '<header id="card"><h1>Title</h1><p>Credit</p></header>'; do
+    grep -qF "$text" "$dir/p.html" || bad "the page lacks $text"
+done
+# poster PAGE: the image in it.
+poster() { sed -n 's#.*<image id="still".*base64,\([^"]*\)".*#\1#p' "$1" | base64 -d; }
+poster "$dir/p.html" >"$dir/poster.jpg"
+bytes=$(wc -c <"$dir/poster.jpg")
+[ "$bytes" -gt 500 ] && [ "$bytes" -lt 20000 ] || bad "the poster has $bytes bytes"
+expect 0 "" share "$stream" -o "$dir/p.html" --poster "$dir/poster.jpg"
+poster "$dir/p.html" | cmp - "$dir/poster.jpg" || bad "a poster from a file"
+expect 0 "and a poster of 0" share "$stream" -o "$dir/p.html" --poster none
+! grep -q '<svg id="poster"\|og:image' "$dir/p.html" || bad "a poster, although none was wanted"
 
 # Without a scene.
 expect 0 "without a scene" share -o "$dir/player.html"
-cmp "$dir/player.html" "$page" || bad "the page without a scene is another one"
+bare "$dir/player.html" | cmp - <(sed '/^<!-- poster -->$/d' "$page") || bad "the page without a scene is another one"
 
 # Errors leave existing files unchanged.
 echo kept >"$dir/kept.html"
 expect 2 "no output" share "$stream"
 cp "$stream" "$dir/s.adcgs"
+expect 2 "neither a stored camera's name nor an index from 0 to" share "$cameras" -o "$dir/kept.html" --camera nobody
+expect 2 "the stream lasts from" share "$stream" -o "$dir/kept.html" --time 1e6
+expect 2 "time" share "$stream" -o "$dir/kept.html" --time soon
+expect 2 "as #rrggbb" share "$stream" -o "$dir/kept.html" --background 'red;}</style>'
+expect 2 "as #rrggbb" share "$stream" -o "$dir/kept.html" --background '#12345'
+expect 2 "begins with https://" share "$stream" -o "$dir/kept.html" --image 'javascript:1'
+expect 2 "loop" share "$stream" -o "$dir/kept.html" --loop maybe
+expect 2 "needs a scene" share -o "$dir/kept.html" --camera 0
+expect 3 "No such file" share "$stream" -o "$dir/kept.html" --poster "$dir/none.jpg"
+expect 4 "expected a JPEG or PNG image" share "$stream" -o "$dir/kept.html" --poster "$stream"
+head -c 100 "$dir/poster.jpg" >"$dir/half.jpg"
+expect 4 "half.jpg" share "$stream" -o "$dir/kept.html" --poster "$dir/half.jpg"
 expect 2 "would replace the stream" share "$dir/s.adcgs" -o "$dir/s.adcgs"
 cmp -s "$dir/s.adcgs" "$stream" || bad "the stream was overwritten"
 expect 3 "No such file" share "$dir/none.adcgs" -o "$dir/kept.html"

@@ -102,6 +102,25 @@ void PAGE_EXPORT(view_seek)(double part)
     page.state.moved = page.state.now;
 }
 
+/** Starts as the page is asked to: at a time in seconds, in a loop or once, playing or not. */
+void PAGE_EXPORT(view_start)(double time, int loop, int playing)
+{
+    adcgs_play_clock *const clock = &page.state.clock;
+    adcgs_play_clock_seek(clock, (time - clock->begin) * clock->rate / ADCGS_MAX(1, clock->frames - 1));
+    clock->loop = loop;
+    if (playing != clock->playing)
+        adcgs_play_clock_toggle(clock);
+}
+
+/** Look through another camera. */
+void PAGE_EXPORT(view_place)(const adcgs_camera *camera)
+{
+    page.state.flying = 0;
+    page.state.jumped = -1;
+    page.state.moved = page.state.now;
+    adcgs_orbit_control_jump(&page.state.control, camera);
+}
+
 /** The camera for the image; a divider reduces its size. */
 const adcgs_camera *PAGE_EXPORT(view_camera)(int divider)
 {
@@ -116,11 +135,11 @@ const adcgs_camera *PAGE_EXPORT(view_camera)(int divider)
  * The same camera for a shader: rotation and translation from the scene's units, fx, fy, cx, cy, near plane, and four limits, 21
  * numbers in total; NULL if it cannot be rendered.
  */
-const float *PAGE_EXPORT(view_uniforms)(void)
+const float *PAGE_EXPORT(view_uniforms)(int divider)
 {
     static adcgs_view view;
     _Static_assert(sizeof view == 2 * sizeof(int32_t) + 21 * sizeof(float), "the shader's numbers lie in a row");
-    return adcgs_view_init(&view, view_camera(1), page.origin, page.unit, NULL) == ADCGS_OK ? view.rotation : NULL;
+    return adcgs_view_init(&view, view_camera(divider), page.origin, page.unit, NULL) == ADCGS_OK ? view.rotation : NULL;
 }
 
 /** Report the time that an image took: the next ones may be coarser. */
