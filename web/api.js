@@ -17,7 +17,7 @@ function needScene() {
 }
 
 function setPlaying(playing) {
-    if (page.begin)
+    if (playing && page.begin)
         page.begin();
     if (!opened())
         wishes.autoplay = playing;

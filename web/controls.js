@@ -133,7 +133,7 @@ let seconds = '';
 /** The controls fade while it plays and there is no input. */
 function showIdle() {
     const bar = $('bar'), busy = performance.now() - active < IDLE_MS || bar.matches(':hover') || bar.querySelector(':focus-visible');
-    $('stage').classList.toggle('idle', !busy && page.playing && document.querySelector('.panel:not([hidden])') === null);
+    $('stage').classList.toggle('idle', page.fades && !busy && page.playing && document.querySelector('.panel:not([hidden])') === null);
 }
 
 function showTime() {

@@ -17,6 +17,7 @@ const page = window.adcgs = {
     fast: {},             // milliseconds for the last image of the GPU: pack, sort, draw, and until it was there
     divider: 1,           // of the size of the GPU's images
     adaptive: true,       // whether the divider follows the GPU's speed
+    fades: true,          // whether the controls disappear while it plays
     get view() { return view; },
     get generation() { return generation; }, // of the scene's state; that of the last image is in page.picture
     get gpu() { return gpu; },

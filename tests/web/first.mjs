@@ -250,7 +250,7 @@ async function pictures() {
         await shot(name('first'));
         await go(urlOf('share.html'));
         await run(`await until(() => adcgs.playing && document.querySelector('.shown'), 'playing');
-            window.dispatchEvent(new Event('focusin')); await sleep(500);`);
+            adcgs.fades = document.getElementById('hint').hidden = false; await sleep(500);`);
         await shot(name('playing'));
         await run(`adcgs.pause(); document.getElementById('keys').click(); await settled(); await sleep(400);`);
         await shot(name('help'));
