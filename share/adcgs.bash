@@ -54,7 +54,9 @@ _adcgs()
         _adcgs_kept=$previous=
         _adcgs_stub=${word#*=}
     fi
-    local name letter kind value words help options=() found=
+    local name letter kind value words help options=() found= verb=
+    # adcgs VERB ... is completed as adcgs-VERB.
+    [[ ${1##*/} == adcgs && $line =~ ^[^[:blank:]]+[[:blank:]]+([^-[:blank:]][^[:blank:]]*)[[:blank:]] ]] && verb=${BASH_REMATCH[1]}
     while IFS=$'\t' read -r name letter kind value words help; do
         [[ $name == - ]] || options+=("$name")
         if [[ $kind != flag && $previous == -?* && ($previous == "$name" || $previous == "$letter") ]]; then
@@ -65,9 +67,11 @@ _adcgs()
                 _adcgs_words "${options[@]}"
             elif [[ $kind == file ]]; then
                 _adcgs_files
+            elif [[ $words != - ]]; then
+                _adcgs_words $words
             fi
         fi
-    done < <("${1/#\~/$HOME}" --completion 2>/dev/null)
+    done < <("${1/#\~/$HOME}" $verb --completion 2>/dev/null)
     # Remove the front part, which bash does not replace.
     local current=${COMP_WORDS[COMP_CWORD]} i
     [[ $current == [=:] ]] && current=
@@ -77,5 +81,5 @@ _adcgs()
     done
 }
 
-complete -F _adcgs adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join \
+complete -F _adcgs adcgs adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join \
     adcgs-share adcgs-sweep

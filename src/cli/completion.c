@@ -30,5 +30,5 @@ void adcgs_cli_print_completion(const adcgs_cli *cli)
         print_row("quiet", 'q', "flag", NULL, NULL, "print neither progress nor remarks");
     print_row("help", 'h', "flag", NULL, NULL, "print this text and exit");
     print_row("version", 'V', "flag", NULL, NULL, "print versions and exit");
-    print_row(NULL, 0, cli->max_operands ? "file" : "value", NULL, NULL, cli->operands);
+    print_row(NULL, 0, cli->max_operands && !cli->operand_words ? "file" : "value", NULL, cli->operand_words, cli->operands);
 }

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 # The shells complete options, their values, settings and files, from the tables that the programs print.
 . "${srcdir:-.}/tests/cli/common.sh"
-need adcgs-enc adcgs-dec adcgs-info
+need adcgs adcgs-enc adcgs-dec adcgs-info
 functions=$(cd "${srcdir:-.}" && pwd)/share
 script=$functions/adcgs.bash
 here=$PWD
@@ -50,12 +50,19 @@ case $(offered "adcgs-enc --") in
     *--bf16*--help*--preset*--quiet*--set*--version*) ;;
     *) bad "options are missing: $(offered "adcgs-enc --")" ;;
 esac
+# adcgs completes verbs, then as the program of the verb.
+wants "adcgs e" "enc|eval"
+wants "adcgs help sw" "sweep"
+wants "adcgs --he" "--help"
+wants "adcgs enc scene -p s" "slow"
+wants "adcgs dec film.adcgs --cpu=av" "avx2|avx512"
+wants "adcgs info fo" "folder"
 # Also a part of a word that bash splits at ':'.
 wants "adcgs-dec http://host/n" ""
 
 # Each program prints its complete table, with all options of its help.
 cd "$here" || exit 99
-for program in adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join adcgs-share \
+for program in adcgs adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join adcgs-share \
     adcgs-sweep; do
     [ -x "./$program" ] || continue
     "./$program" --completion | cut -f 1 | grep -v '^-$' | sort -u >"$dir/table"
@@ -88,6 +95,11 @@ slow|adcgs-enc scene -p s
 lambda|adcgs-enc scene --set lamb
 rdo_strength|adcgs-enc scene --set lambda=0.1,rdo
 rdo_strength|adcgs-enc scene --set=lambda=0.1,rdo
+enc|eval|adcgs e
+sweep|adcgs help sw
+slow|adcgs enc scene -p s
+notes.txt|adcgs dec film.adcgs --output=n
+folder|adcgs info fo
 END
     rm "$dir/film two.adcgs" # zsh would quote this name
     mapfile -t lines < <(sed 's/.*|//' "$dir/wanted")

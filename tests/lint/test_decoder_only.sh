@@ -19,9 +19,10 @@ fail()
 
 "$source/configure" --disable-encoder --disable-static CXX=false PKG_CONFIG=false CFLAGS=-O0 adcgs_cv_version_script=no >log 2>&1 || fail "configure"
 make -j2 >log 2>&1 || fail "make"
-for program in adcgs-dec adcgs-info; do
+for program in adcgs adcgs-dec adcgs-info; do
     ./$program --version >log 2>&1 || fail "$program --version"
 done
+[ "$(./adcgs help | sed -n 's/^  \([a-z][a-z-]*\) .*/\1/p' | xargs)" = "dec info" ] || fail "verbs of adcgs"
 for program in adcgs-enc adcgs-eval; do
     [ ! -e $program ] || fail "$program was built"
 done
