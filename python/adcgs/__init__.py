@@ -9,24 +9,25 @@
         for time, frame in stream.frames():
             ...
 
-help(adcgs.open) describes how to open a stream, help(adcgs.Decoder) how to query it. Arrays are NumPy's. Calls that return no
+help(adcgs.open) describes how to open a stream, help(adcgs.Decoder) how to query it, help(adcgs.encode) how to make one. Arrays are NumPy's. Calls that return no
 array (info, cameras, metadata, digests of models and splats) work without NumPy. ADCGS_LIBRARY selects another libadcgs.so than
 the one installed with this package.
 """
 from ._library import lib as _lib
 from .camera import Camera
 from .decoder import (Bytes, Decoder, Info, Pool, PushDecoder, Splats, frame_digest, frame_to_u8, open, open_push)
+from .encoder import encode
 from .errors import (DataError, Error, FloatError, InternalError, LimitError, NoMemoryError, ReadError, TruncatedError,
                      UnsupportedError, UsageError)
 
 __version__ = _lib.adcgs_version_string().decode()
 
 
-def cpu_best():
+def cpu_best() -> str:
     """The best CPU level that this library supports on this machine: "scalar", "avx2" or "avx512"."""
     return _lib.adcgs_cpu_name(_lib.adcgs_cpu_best()).decode()
 
 
 __all__ = ["Bytes", "Camera", "DataError", "Decoder", "Error", "FloatError", "Info", "InternalError", "LimitError",
            "NoMemoryError", "Pool", "PushDecoder", "ReadError", "Splats", "TruncatedError", "UnsupportedError", "UsageError",
-           "cpu_best", "frame_digest", "frame_to_u8", "open", "open_push"]
+           "cpu_best", "encode", "frame_digest", "frame_to_u8", "open", "open_push"]

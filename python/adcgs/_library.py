@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Finding and declaring libadcgs.so."""
+from __future__ import annotations
+
 import ctypes
 import os
 from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_ssize_t, c_uint32, c_uint64, c_uint8, c_void_p
+from typing import Any
 
 from . import _structs as s
 from .errors import BY_STATUS, InternalError
@@ -15,7 +18,7 @@ _camera = POINTER(s.adcgs_camera)
 _digest = c_uint8 * 16
 
 # Result and argument types by function. Functions that return a status are called by call(), which raises failures.
-PROTOTYPES = {
+PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "adcgs_close": (None, [_opened]),
     "adcgs_config_init": (None, [_config, c_size_t]),
     "adcgs_cpu_best": (c_int, []),
@@ -50,7 +53,7 @@ PROTOTYPES = {
 }
 
 
-def _find():
+def _find() -> ctypes.CDLL:
     """Find ADCGS_LIBRARY, or the library that was installed with this package."""
     name = os.environ.get("ADCGS_LIBRARY")
     if not name:
@@ -65,7 +68,7 @@ def _find():
         raise ImportError(f"adcgs: {error}") from None
 
 
-def _declare(library):
+def _declare(library: ctypes.CDLL) -> ctypes.CDLL:
     for name, (result, arguments) in PROTOTYPES.items():
         function = getattr(library, name, None)
         if function is None:
@@ -77,7 +80,7 @@ def _declare(library):
 lib = _declare(_find())
 
 
-def call(function, *arguments):
+def call(function: Any, *arguments: Any) -> None:
     """Call a function that returns a status, without its error argument; raise a failure as an exception."""
     error = s.adcgs_error()
     status = function(*arguments, ctypes.byref(error))
@@ -87,6 +90,6 @@ def call(function, *arguments):
         raise failure
 
 
-def digest():
+def digest() -> Any:
     """An uninitialised MD5."""
     return _digest()

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Sources of a decoder: a file's name, bytes, or an object to read from."""
+from __future__ import annotations
+
 import ctypes
 import os
+from typing import Any
 
 from . import _structs as s
 from ._library import call, lib
@@ -12,30 +15,30 @@ class Source:
     """An object with read(), and seek() for random access, behind the library's callbacks. Its exceptions are stored, since a
     callback cannot raise through the library."""
 
-    def __init__(self, file):
+    def __init__(self, file: Any) -> None:
         self.file = file
-        self.raised = None
+        self.raised: BaseException | None = None
         self.read = s.READ_FN(self._read)
         self.read_at = s.READ_AT_FN(self._read_at)
 
-    def size(self):
+    def size(self) -> int:
         return self.file.seek(0, os.SEEK_END)
 
-    def _give(self, buffer, size):
+    def _give(self, buffer: Any, size: int) -> int:
         data = self.file.read(size)
         if data is None or len(data) > size:
             raise OSError("read() returned no data yet, or more than requested")
         ctypes.memmove(buffer, bytes(data), len(data))
         return len(data)
 
-    def _read(self, _, buffer, size):
+    def _read(self, _: Any, buffer: Any, size: int) -> int:
         try:
             return self._give(buffer, size)
         except BaseException as error:
             self.raised = error
             return -1
 
-    def _read_at(self, _, offset, buffer, size):
+    def _read_at(self, _: Any, offset: int, buffer: Any, size: int) -> int:
         try:
             self.file.seek(offset)
             return self._give(buffer, size)
@@ -43,7 +46,7 @@ class Source:
             self.raised = error
             return -1
 
-    def call(self, function, *arguments):
+    def call(self, function: Any, *arguments: Any) -> None:
         """As call(). If the object raised an exception, raise that in place of the failure that it caused."""
         self.raised = None
         try:
@@ -54,7 +57,7 @@ class Source:
             raise
 
 
-def open_source(handle, source, config):
+def open_source(handle: ctypes.c_void_p, source: Any, config: s.adcgs_config) -> Source | None:
     """Open a decoder. Returns the object that must be kept while it is open, or None."""
     out, how = ctypes.byref(handle), ctypes.byref(config)
     if isinstance(source, (str, os.PathLike)):

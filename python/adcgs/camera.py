@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Cameras in the library's and in gsplat's conventions."""
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from . import _structs as s
-from ._numpy import numpy
+from ._numpy import Float64, numpy
 
 
 @dataclass(frozen=True)
@@ -24,12 +28,12 @@ class Camera:
     fy: float
     cx: float
     cy: float
-    cam_to_world: tuple
+    cam_to_world: Sequence[float]
     near_plane: float = 0.01
     name: str = ""
 
     @classmethod
-    def from_gsplat(cls, viewmat, K, width, height, near_plane=0.01, name=""):
+    def from_gsplat(cls, viewmat: Any, K: Any, width: int, height: int, near_plane: float = 0.01, name: str = "") -> Camera:
         """The camera of a viewmat [4, 4], world to camera, and a K [3, 3], pixels, without skew. The camera's centre is computed
         from viewmat in binary64. So a frame may differ in its last bits from one of the camera that viewmat was made of."""
         np = numpy()
@@ -44,13 +48,13 @@ class Camera:
                    tuple(pose.ravel().tolist()), float(near_plane), name)
 
     @property
-    def camtoworld(self):
+    def camtoworld(self) -> Float64:
         """float64 [4, 4], camera to world."""
         np = numpy()
         return np.array([*self.cam_to_world, 0, 0, 0, 1], np.float64).reshape(4, 4)
 
     @property
-    def viewmat(self):
+    def viewmat(self) -> Float64:
         """float64 [4, 4], world to camera, as gsplat takes it."""
         np = numpy()
         pose, view = self.camtoworld, np.eye(4)
@@ -59,12 +63,12 @@ class Camera:
         return view
 
     @property
-    def K(self):
+    def K(self) -> Float64:
         """float64 [3, 3], pixels, as gsplat takes it."""
         return numpy().array([[self.fx, 0, self.cx], [0, self.fy, self.cy], [0, 0, 1]])
 
 
-def to_struct(camera):
+def to_struct(camera: Camera) -> s.adcgs_camera:
     pose = [float(value) for value in camera.cam_to_world]
     name = camera.name.encode()
     if len(pose) != 12 or len(name) > 63:
@@ -75,6 +79,6 @@ def to_struct(camera):
     return out
 
 
-def from_struct(camera):
+def from_struct(camera: s.adcgs_camera) -> Camera:
     return Camera(camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, tuple(camera.cam_to_world),
                   camera.near_plane, camera.name.decode("utf-8", "replace"))

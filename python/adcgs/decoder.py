@@ -1,50 +1,124 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Decoders: open a stream, query its contents, get its splats, render frames."""
-import collections
+from __future__ import annotations
+
 import ctypes
 import math
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, BinaryIO, Literal, NamedTuple, TypeVar
 
 from . import _structs as s
 from ._library import call, digest, lib
-from ._numpy import numpy
+from ._numpy import Float32, Uint8, numpy
 from ._source import open_source
 from .camera import Camera, from_struct, to_struct
+from .errors import Error
 
-Splats = collections.namedtuple("Splats", "means quats scales opacities colors")
-Splats.__doc__ = """Splats at one time, float32, with gsplat's names: input of gsplat.rasterization() with sh_degree None.
+Cpu = Literal["auto", "scalar", "avx2", "avx512"]
+Alpha = Literal["opaque", "straight", "premultiplied"]
+Arrival = Literal["header", "cameras", "segment", "end"]
+Log = Callable[[str, str], Any]
+_Self = TypeVar("_Self", bound="Decoder")
 
-means      [N, 3]  centres
-quats      [N, 4]  unit quaternions w x y z, from a splat's axes to the world's
-scales     [N, 3]  standard deviations along a splat's axes, above 0 (not their logarithms)
-opacities  [N]     0 to 0.99 (not logits)
-colors     [N, 3]  RGB in the stream's transfer characteristic (Info.colour), 0 black to 1 white, not clipped
-"""
-Bytes = collections.namedtuple("Bytes", [name for name, _ in s.adcgs_bytes._fields_])
-Info = collections.namedtuple("Info", [name for name, _ in s.adcgs_info._fields_ if name != "size"])
-Info.__doc__ = """Summary of a stream: the members of adcgs_info (adcgs_get_info(3)). Times are in seconds, scene_origin in world
-units; world = scene_origin + scene_scale * scene."""
+
+class Splats(NamedTuple):
+    """Splats at one time, float32, with gsplat's names: input of gsplat.rasterization() with sh_degree None.
+
+    means      [N, 3]  centres
+    quats      [N, 4]  unit quaternions w x y z, from a splat's axes to the world's
+    scales     [N, 3]  standard deviations along a splat's axes, above 0 (not their logarithms)
+    opacities  [N]     0 to 0.99 (not logits)
+    colors     [N, 3]  RGB in the stream's transfer characteristic (Info.colour), 0 black to 1 white, not clipped
+    """
+
+    means: Float32
+    quats: Float32
+    scales: Float32
+    opacities: Float32
+    colors: Float32
+
+    def __repr__(self) -> str:
+        return f"<adcgs.Splats: {_count(len(self.means), 'splat')}>"
+
+
+class Bytes(NamedTuple):
+    """Bytes of a stream by content: the members of adcgs_bytes."""
+
+    header: int
+    networks: int
+    geometry: int
+    layer: tuple[int, ...]
+    cameras: int
+    metadata: int
+    total: int
+
+
+class Info(NamedTuple):
+    """Summary of a stream: the members of adcgs_info (adcgs_get_info(3)). Times are in seconds, scene_origin in world units;
+    world = scene_origin + scene_scale * scene."""
+
+    version_major: int
+    version_minor: int
+    profile: int
+    level: int
+    segments: int
+    anchors: int
+    gaussians: int
+    static_anchors: int
+    weights: int
+    k: int
+    layers: int
+    cameras: int
+    time_start: float
+    time_end: float
+    frame_rate: float
+    scene_origin: tuple[float, float, float]
+    scene_scale: float
+    background: tuple[float, float, float]
+    truncated: int
+    colour: str
+    axes: str
+    units: str
+    bytes: Bytes
+    metadata: int
+    faults: int
+    tiers: int
+    tiers_present: int
+    time_committed: float
+    time_available: float
+    segments_total: int
+    tiers_received: int
+    first_segment: int
+
+
+def _count(n: int, word: str) -> str:
+    return f"{n:,} {word}{'' if n == 1 else 's'}"
 
 
 class Pool:
     """Threads that several decoders share. threads: 1 to 256, including the calling one; 0: one for each processor."""
 
-    _handle = None  # if the constructor fails
+    _handle = ctypes.c_void_p()  # if the constructor fails
 
-    def __init__(self, threads=0):
+    def __init__(self, threads: int = 0) -> None:
         self._handle = ctypes.c_void_p()
         call(lib.adcgs_pool_create, ctypes.byref(self._handle), threads)
 
-    def __del__(self):
+    def __repr__(self) -> str:
+        return f"<adcgs.Pool: {_count(self.threads, 'thread')}>"
+
+    def __del__(self) -> None:
         if self._handle:
             lib.adcgs_pool_free(ctypes.byref(self._handle))
 
     @property
-    def threads(self):
+    def threads(self) -> int:
         """Number of threads."""
         return lib.adcgs_pool_threads(self._handle)
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     """A struct's member as a Python value."""
     if isinstance(value, s.adcgs_bytes):
         return Bytes(*(_plain(getattr(value, name)) for name in Bytes._fields))
@@ -53,7 +127,8 @@ def _plain(value):
     return tuple(value) if isinstance(value, ctypes.Array) else value
 
 
-def _make_config(threads, cpu, layers, memory_limit, strict, conceal, on_demand, tune_in, pool, log):
+def _make_config(threads: int, cpu: str, layers: int, memory_limit: int, strict: bool, conceal: bool, on_demand: bool,
+                 tune_in: bool, pool: Pool | None, log: Log | None) -> s.adcgs_config:
     config = s.adcgs_config()
     lib.adcgs_config_init(ctypes.byref(config), ctypes.sizeof(config))
     if cpu not in s.CPU_LEVELS:
@@ -63,7 +138,8 @@ def _make_config(threads, cpu, layers, memory_limit, strict, conceal, on_demand,
     if pool is not None:
         config.pool = pool._handle
     if log is not None:
-        config.log = s.LOG_FN(lambda _, level, text: log(s.LOG_LEVELS.get(level, "info"), text.decode("utf-8", "replace")))
+        tell = log
+        config.log = s.LOG_FN(lambda _, level, text: tell(s.LOG_LEVELS.get(level, "info"), text.decode("utf-8", "replace")))
     return config
 
 
@@ -72,29 +148,41 @@ class Decoder:
     the end of a with statement, by close(), or with its last reference. A failure raises an Error with the library's one-line
     message."""
 
-    _handle = None  # if the constructor fails
+    _handle = ctypes.c_void_p()  # if the constructor fails
 
-    def __init__(self, config, pool):
+    def __init__(self, config: s.adcgs_config, pool: Pool | None) -> None:
         self._handle = ctypes.c_void_p()
-        self._source = None
+        self._source: Any = None
         self._config, self._pool = config, pool  # keep alive: the library uses both
 
-    def __enter__(self):
+    def __repr__(self) -> str:
+        name = f"adcgs.{type(self).__name__}"
+        if not self._handle:
+            return f"<{name}: closed>"
+        try:
+            info = self.info
+        except Error:
+            return f"<{name}: no header yet>"
+        return (f"<{name}: {info.time_start:g} to {info.time_end:g} s, {info.frame_rate:g} frames/s, "
+                f"{_count(info.segments, 'segment')}, {_count(info.gaussians, 'primitive')}, {_count(info.cameras, 'camera')}, "
+                f"{_count(info.bytes.total, 'byte')}>")
+
+    def __enter__(self: _Self) -> _Self:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.close()
 
-    def __del__(self):
+    def __del__(self) -> None:
         self.close()
 
-    def close(self):
+    def close(self) -> None:
         """Free everything that it owns. Arrays that it returned stay valid."""
         if self._handle:
             lib.adcgs_close(ctypes.byref(self._handle))
         self._source = None
 
-    def _call(self, function, *arguments):
+    def _call(self, function: Any, *arguments: Any) -> None:
         if not self._handle:
             raise ValueError("the decoder is closed")
         (self._source.call if self._source else call)(function, self._handle, *arguments)
@@ -102,18 +190,18 @@ class Decoder:
     # ---- contents of the stream ----
 
     @property
-    def info(self):
+    def info(self) -> Info:
         """An Info with the current values."""
         info = s.adcgs_info()
         self._call(lib.adcgs_get_info, ctypes.byref(info), ctypes.sizeof(info))
         return Info(*(_plain(getattr(info, name)) for name in Info._fields))
 
     @property
-    def cameras(self):
+    def cameras(self) -> list[Camera]:
         """The stored cameras, a list of Camera."""
         return [self.camera(i) for i in range(self.info.cameras)]
 
-    def camera(self, which):
+    def camera(self, which: int | str | Camera) -> Camera:
         """A stored camera, by its number or its name; a Camera is returned unchanged."""
         if isinstance(which, Camera):
             return which
@@ -122,20 +210,20 @@ class Decoder:
                 if camera.name == which:
                     return camera
             raise KeyError(f"{which}: no stored camera has that name")
-        camera = s.adcgs_camera()
-        self._call(lib.adcgs_get_camera, which, ctypes.byref(camera))
-        return from_struct(camera)
+        view = s.adcgs_camera()
+        self._call(lib.adcgs_get_camera, which, ctypes.byref(view))
+        return from_struct(view)
 
     @property
-    def metadata(self):
+    def metadata(self) -> dict[str, str]:
         """Texts stored in the stream, a dict; of a repeated key, the first text. Their contents are untrusted."""
-        texts = {}
+        texts: dict[str, str] = {}
         for i in range(self.info.metadata):
             key = lib.adcgs_get_metadata_key(self._handle, i)
             texts[_plain(key)] = _plain(lib.adcgs_get_metadata(self._handle, key))
         return texts
 
-    def times(self, begin=None, end=None):
+    def times(self, begin: float | None = None, end: float | None = None) -> list[float]:
         """Times from begin to end, in seconds, both included, at the stream's frame rate; by default the whole stream."""
         info = self.info
         begin = info.time_start if begin is None else begin
@@ -144,11 +232,11 @@ class Decoder:
 
     # ---- splats ----
 
-    def set_tiers(self, tiers):
+    def set_tiers(self, tiers: int) -> None:
         """From now on, render only the first tiers, a coarser image in less time; 0: all."""
         self._call(lib.adcgs_set_tiers, tiers)
 
-    def splats(self, time, units="world", draws_nothing=False):
+    def splats(self, time: float, units: Literal["world", "scene"] = "world", draws_nothing: bool = False) -> Splats:
         """Splats at a time in seconds; a time outside the stream's range becomes its start or end.
 
         units          "world", or "scene": the numbers that the decoder computes, without the scene's origin and scale
@@ -160,7 +248,7 @@ class Decoder:
             raise ValueError(f"units: {units}: expected world or scene")
         self._call(lib.adcgs_get_primitives, time, ctypes.byref(primitives))
 
-        def take(*arrays):
+        def take(*arrays: Any) -> Any:
             return np.stack([np.ctypeslib.as_array(array, (primitives.n,)) for array in arrays], axis=-1)
 
         means, scales = take(*primitives.mean), take(*primitives.scale)
@@ -177,34 +265,35 @@ class Decoder:
 
     # ---- frames ----
 
-    def render(self, time, camera=0):
+    def render(self, time: float, camera: int | str | Camera = 0) -> Float32:
         """A frame, float32 [height, width, 3]: RGB in the stream's transfer characteristic, 0 black to 1 white, not clipped. It
         is the same to the last bit on every machine. camera: a Camera, or a stored one's number or name."""
-        camera = to_struct(self.camera(camera))
-        out = self._array(camera, 3)
-        frame = s.adcgs_frame(camera.width, camera.height, out.ctypes.data)
-        self._call(lib.adcgs_render, ctypes.byref(camera), time, ctypes.byref(frame))
+        view = to_struct(self.camera(camera))
+        out: Any = self._array(view, 3)
+        frame = s.adcgs_frame(view.width, view.height, out.ctypes.data)
+        self._call(lib.adcgs_render, ctypes.byref(view), time, ctypes.byref(frame))
         return out
 
-    def render_rgba8(self, time, camera=0, alpha="straight"):
+    def render_rgba8(self, time: float, camera: int | str | Camera = 0, alpha: Alpha = "straight") -> Uint8:
         """An image, uint8 [height, width, 4]. alpha: "straight" or "premultiplied": A is the coverage of the splats, without
         background; "opaque": the frame, and A is 255."""
         if alpha not in s.ALPHAS:
             raise ValueError(f"alpha: {alpha}: expected one of {', '.join(s.ALPHAS)}")
-        camera = to_struct(self.camera(camera))
-        out = self._array(camera, 4, "uint8")
-        self._call(lib.adcgs_render_rgba8, ctypes.byref(camera), time, s.ALPHAS.index(alpha), out.ctypes.data, 4 * camera.width)
+        view = to_struct(self.camera(camera))
+        out: Any = self._array(view, 4, "uint8")
+        self._call(lib.adcgs_render_rgba8, ctypes.byref(view), time, s.ALPHAS.index(alpha), out.ctypes.data, 4 * view.width)
         return out
 
-    def render_depth(self, time, camera=0):
+    def render_depth(self, time: float, camera: int | str | Camera = 0) -> tuple[Float32, Float32]:
         """(depth, alpha), float32 [height, width] each. depth: world units along the camera's axis, 1e10 where alpha is 0. alpha:
         the coverage of the splats, 0 to 1."""
-        camera = to_struct(self.camera(camera))
-        depth, alpha = self._array(camera), self._array(camera)
-        self._call(lib.adcgs_render_depth, ctypes.byref(camera), time, depth.ctypes.data, alpha.ctypes.data)
+        view = to_struct(self.camera(camera))
+        depth, alpha = self._array(view), self._array(view)
+        self._call(lib.adcgs_render_depth, ctypes.byref(view), time, depth.ctypes.data, alpha.ctypes.data)
         return depth, alpha
 
-    def rasterize(self, time, viewmats, Ks, width, height, near_plane=0.01):
+    def rasterize(self, time: float, viewmats: Sequence[Any], Ks: Sequence[Any], width: int, height: int,
+                  near_plane: float = 0.01) -> tuple[Float32, Float32]:
         """Frames as gsplat.rasterization() returns them: (colors [C, height, width, 3], alphas [C, height, width, 1]), float32,
         with the stream's background behind the splats. viewmats [C, 4, 4]: world to camera; Ks [C, 3, 3]: pixels."""
         np = numpy()
@@ -216,26 +305,26 @@ class Decoder:
             alphas[i, :, :, 0] = self.render_depth(time, camera)[1]
         return colors, alphas
 
-    def frames(self, camera=0, times=None):
+    def frames(self, camera: int | str | Camera = 0, times: Iterable[float] | None = None) -> Iterator[tuple[float, Float32]]:
         """Yield (time, frame), as render() returns it, for each of times, in seconds; by default for times()."""
         camera = self.camera(camera)
         for time in self.times() if times is None else times:
             yield time, self.render(time, camera)
 
-    def _array(self, camera, samples=None, kind="float32"):
+    def _array(self, camera: s.adcgs_camera, samples: int | None = None, kind: str = "float32") -> Any:
         if not 1 <= camera.width <= 16384 or not 1 <= camera.height <= 16384:
             raise ValueError(f"a camera of {camera.width}x{camera.height} pixels: expected 1 to 16384 each")
         return numpy().empty((camera.height, camera.width) + ((samples,) if samples else ()), kind)
 
     # ---- conformance ----
 
-    def model_digest(self, segment):
+    def model_digest(self, segment: int) -> str:
         """MD5 of a segment's decoded model (point M), 32 hexadecimal digits."""
         out = digest()
         self._call(lib.adcgs_get_model_digest, segment, out)
         return bytes(out).hex()
 
-    def splat_digest(self, time):
+    def splat_digest(self, time: float) -> str:
         """MD5 of the splats at a time (point S), 32 hexadecimal digits."""
         out = digest()
         self._call(lib.adcgs_get_splat_digest, time, out)
@@ -246,11 +335,12 @@ class PushDecoder(Decoder):
     """A decoder for bytes that arrive over time, made by open_push(). Before the first "header" queries fail, before the first
     "segment" rendering fails. From then on, the parts received so far serve all times."""
 
-    def push(self, data):
+    def push(self, data: bytes | bytearray | memoryview) -> list[Arrival]:
         """Give the next bytes of the stream, any number of them. Returns the parts that they completed, a list of "header",
         "cameras", "segment" (one that can be rendered, or a further part of one) and "end". A failure is final, but the parts
         that arrived before it can still be rendered."""
-        data, at, brought = bytes(data), 0, []
+        data, at = bytes(data), 0
+        brought: list[Any] = []
         used, arrived = ctypes.c_size_t(), ctypes.c_int()
         start = ctypes.cast(ctypes.c_char_p(data), ctypes.c_void_p).value or 0
         while at < len(data) and brought[-1:] != ["end"]:
@@ -260,17 +350,18 @@ class PushDecoder(Decoder):
                 brought.append(s.ARRIVALS[arrived.value])
         return brought
 
-    def end(self):
+    def end(self) -> None:
         """Declare that no more bytes will come. If the stream has not ended, its complete part remains."""
         self._call(lib.adcgs_push_end)
 
-    def discard_before(self, time):
+    def discard_before(self, time: float) -> None:
         """Declare that no time before this one, in seconds, will be requested again: past segments are freed."""
         self._call(lib.adcgs_push_discard_before, time)
 
 
-def open(source, *, threads=0, cpu="auto", layers=0, tiers=0, memory_limit=0, strict=False, conceal=False, on_demand=False,
-         tune_in=False, pool=None, log=None):
+def open(source: str | os.PathLike[str] | bytes | bytearray | memoryview | BinaryIO, *, threads: int = 0, cpu: Cpu = "auto",
+         layers: int = 0, tiers: int = 0, memory_limit: int = 0, strict: bool = False, conceal: bool = False,
+         on_demand: bool = False, tune_in: bool = False, pool: Pool | None = None, log: Log | None = None) -> Decoder:
     """Open a stream: a file's name, bytes, or an object with read(), which is read to the stream's end. Returns a Decoder.
 
     threads       1 to 256; 0: one for each processor
@@ -293,21 +384,22 @@ def open(source, *, threads=0, cpu="auto", layers=0, tiers=0, memory_limit=0, st
     return decoder
 
 
-def open_push(*, threads=0, cpu="auto", layers=0, memory_limit=0, strict=False, tune_in=False, pool=None, log=None):
+def open_push(*, threads: int = 0, cpu: Cpu = "auto", layers: int = 0, memory_limit: int = 0, strict: bool = False,
+              tune_in: bool = False, pool: Pool | None = None, log: Log | None = None) -> PushDecoder:
     """Open a PushDecoder; the arguments are those of open()."""
     decoder = PushDecoder(_make_config(threads, cpu, layers, memory_limit, strict, False, False, tune_in, pool, log), pool)
     call(lib.adcgs_open_push, ctypes.byref(decoder._handle), ctypes.byref(decoder._config))
     return decoder
 
 
-def frame_digest(frame):
+def frame_digest(frame: Any) -> str:
     """MD5 of a frame (point R), float32 [height, width, 3], as adcgs-dec --md5 prints it."""
     out, (array, struct) = digest(), _frame(frame)
     lib.adcgs_frame_digest(ctypes.byref(struct), out)
     return bytes(out).hex()
 
 
-def frame_to_u8(frame):
+def frame_to_u8(frame: Any) -> Uint8:
     """A frame, float32 [height, width, 3], as uint8: floor(clip(v, 0, 1) * 255 + 0.5)."""
     array, struct = _frame(frame)
     out = numpy().empty(array.shape, "uint8")
@@ -315,7 +407,7 @@ def frame_to_u8(frame):
     return out
 
 
-def _frame(frame):
+def _frame(frame: Any) -> tuple[Any, s.adcgs_frame]:
     """The array, which must be kept alive, and its struct."""
     array = numpy().ascontiguousarray(frame, "float32")
     if array.ndim != 3 or array.shape[2] != 3:

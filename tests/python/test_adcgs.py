@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """The Python package gives the results of the programs. Run by test_python.sh in the build folder, with VECTORS and OUT set."""
 import hashlib
+import inspect
 import io
 import os
 import pathlib
 import re
 import subprocess
 import sys
+import typing
 import unittest
 
 import numpy as np
@@ -244,6 +246,70 @@ class Failures(unittest.TestCase):
         lines = done.stdout.splitlines()
         self.assertTrue(re.match(r"\d+ [\d.]+ [0-9a-f]{32}$", lines[0]))
         self.assertIn("NumPy", lines[1])
+
+
+class Names(unittest.TestCase):
+    def test_repr(self):
+        with adcgs.open(LONG) as stream:
+            self.assertRegex(repr(stream), r"^<adcgs.Decoder: 0 to 0.12 s, .* frames/s, 3 segments, [\d,]+ primitives, .*bytes>$")
+            self.assertRegex(repr(stream.splats(0)), r"^<adcgs.Splats: [\d,]+ splats?>$")
+        self.assertEqual(repr(stream), "<adcgs.Decoder: closed>")
+        self.assertEqual(repr(adcgs.open_push()), "<adcgs.PushDecoder: no header yet>")
+        self.assertEqual(repr(adcgs.Pool(1)), "<adcgs.Pool: 1 thread>")
+
+    def test_hints(self):
+        """Every public function and method has types for all that it takes and returns; the class of a result is that type."""
+        functions = [value for name, value in vars(adcgs).items() if name in adcgs.__all__ and inspect.isfunction(value)]
+        for kind in (adcgs.Camera, adcgs.Decoder, adcgs.PushDecoder, adcgs.Pool):
+            for member in vars(kind).values():
+                member = getattr(member, "fget", None) or getattr(member, "__func__", member)
+                if inspect.isfunction(member) and not member.__name__.startswith("__"):
+                    functions.append(member)
+        self.assertGreater(len(functions), 25)
+        for function in functions:
+            hints = typing.get_type_hints(function)
+            names = [name for name in inspect.signature(function).parameters if name not in ("self", "cls")]
+            self.assertEqual(sorted(hints), sorted([*names, "return"]), function.__qualname__)
+        with adcgs.open(LONG) as stream:
+            for result in (stream.info, stream.info.bytes):
+                for name, hint in typing.get_type_hints(type(result)).items():
+                    self.assertIsInstance(getattr(result, name), typing.get_origin(hint) or hint, name)
+
+
+@unittest.skipUnless(os.access("adcgs-enc", os.X_OK) and os.access("adcgs-demo-scene", os.X_OK), "no encoder")
+class Encoding(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(os.environ["OUT"], "encoding")
+        cls.folder.mkdir()
+        cls.scene = cls.folder / "scene"
+        subprocess.run(["./adcgs-demo-scene", "--scene", "tiny", "--format", "ppm", "-q", "-o", cls.scene], check=True)
+
+    def encode(self, name="s.adcgs", **options):
+        return adcgs.encode(self.scene, self.folder / name, program="./adcgs-enc", preset="draft", threads=1, **options)
+
+    def test_report_and_progress(self):
+        lines = []
+        report = self.encode(iterations=40, set={"matching_frames": 0, "n_fg": 0}, fixed=True, bf16=False, progress=lines.append)
+        self.assertEqual((lines[0]["iteration"], lines[-1]["iteration"], lines[-1]["stage"]), (0, 40, "decisions"))
+        with adcgs.open(self.folder / "s.adcgs") as stream:
+            self.assertEqual(stream.info.bytes.total, report["bytes"])
+
+    def test_an_exception_ends_it(self):
+        """The state is kept, and the exception of the callback is raised."""
+        def stop(line):
+            if line["iteration"]:
+                raise ZeroDivisionError(line["stage"])
+        self.assertRaises(ZeroDivisionError, self.encode, "stopped.adcgs", iterations=2000, progress=stop)
+        self.assertTrue((self.folder / "stopped.adcgs.checkpoint").exists())
+        self.assertFalse((self.folder / "stopped.adcgs").exists())
+
+    def test_failures(self):
+        for options, kind, text in (({"iterations": 3}, adcgs.UsageError, "--iterations 3: expected"),
+                                    ({"no_such": 1}, adcgs.UsageError, "--no-such"), ({"log": "x"}, adcgs.UsageError, "log")):
+            self.assertRaisesRegex(kind, text, self.encode, **options)
+        self.assertRaisesRegex(adcgs.ReadError, "no-scene", adcgs.encode, "no-scene", "x", program="./adcgs-enc")
+        self.assertRaisesRegex(adcgs.UnsupportedError, "no-program: not found", adcgs.encode, self.scene, "x", program="no-program")
 
 
 if __name__ == "__main__":

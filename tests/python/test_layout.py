@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 
+import adcgs
 from adcgs import _library, _structs
 
 source, folder, compiler = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:]
@@ -37,6 +38,8 @@ def same(what, ours, theirs):
 def compare_names():
     for struct in _structs.STRUCTS:
         same(struct.__name__, [name for name, _ in struct._fields_], members(struct.__name__))
+    for kind, struct in ((adcgs.Info, _structs.adcgs_info), (adcgs.Bytes, _structs.adcgs_bytes)):
+        same(kind.__name__, list(kind._fields), [name for name, _ in struct._fields_ if name != "size"])
     for enum, prefix, names in (("adcgs_cpu_level", "adcgs_cpu_", enumerate(_structs.CPU_LEVELS)),
                                 ("adcgs_arrival", "adcgs_arrived_", enumerate(_structs.ARRIVALS)),
                                 ("adcgs_alpha", "adcgs_alpha_", enumerate(_structs.ALPHAS)),

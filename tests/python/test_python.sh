@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
 # The Python package, compared with the built library and the programs: layouts, digests, streams in parts, failures; and as
-# installed.
+# installed, by make or from a wheel.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-info
 library=$PWD/.libs/libadcgs.so
@@ -35,15 +35,49 @@ grep -q "ImportError: adcgs: $dir/none.so" "$dir/log" || { bad "the library's na
 # Installed, it finds the library that was installed with it, even if both are moved.
 unset MAKEFLAGS MFLAGS MAKELEVEL ADCGS_LIBRARY
 if grep -q '^install-pkgpythonPYTHON:' Makefile; then
-    ran make install-libLTLIBRARIES install-pkgpythonPYTHON install-nodist_pkgpythonPYTHON DESTDIR="$dir/root"
+    ran make install-libLTLIBRARIES install-pkgpythonPYTHON install-nodist_pkgpythonPYTHON \
+        install-dist_pkgpythonDATA DESTDIR="$dir/root"
     package=$(find "$dir/root" -path '*/adcgs/__init__.py')
     [ -n "$package" ] || bad "the package was not installed"
+    for file in "$source"/python/adcgs/py* "$source"/python/adcgs/*.py; do
+        [ -e "${package%/*}/${file##*/}" ] || bad "${file##*/} was not installed"
+    done
     ran env PYTHONPATH="$(dirname "$(dirname "$package")")" "$python" -c \
         'import adcgs, sys; print(adcgs.open(sys.argv[1]).model_digest(0), adcgs.__file__)' "$VECTORS/good-sys-cams.adcgs"
     grep -q "^[0-9a-f]* $package$" "$dir/log" || { bad "another package"; cat "$dir/log"; }
-    ran make uninstall-pkgpythonPYTHON uninstall-nodist_pkgpythonPYTHON DESTDIR="$dir/root"
-    [ -z "$(find "$dir/root" -path '*/adcgs/*.py')" ] || bad "files of the package remain"
+    ran make uninstall-pkgpythonPYTHON uninstall-nodist_pkgpythonPYTHON uninstall-dist_pkgpythonDATA DESTDIR="$dir/root"
+    [ -z "$(find "$dir/root" -path '*/adcgs/*.py*')" ] || bad "files of the package remain"
 else
     echo "skipped: installing the package: configured without Python"
 fi
+
+# A wheel, built offline, and installed into a folder that has nothing but NumPy. It needs no library beside it.
+if ! "$python" -m pip --version >/dev/null 2>&1 || ! "$python" -m venv --without-pip --system-site-packages "$dir/venv" 2>/dev/null; then
+    echo "skipped: the wheel: no pip or no venv (Debian: python3-pip, python3-venv)"
+    exit $failed
+fi
+export PIP_NO_INDEX=1 PIP_DISABLE_PIP_VERSION_CHECK=1
+for name in one two; do
+    ran env ADCGS_LIBRARY="$library" "$python" -m pip wheel --no-build-isolation --no-deps -w "$dir/$name" "$source/python"
+done
+wheel=$(echo "$dir"/one/adcgs-*-py3-none-*.whl)
+cmp "$wheel" "$dir/two/${wheel##*/}" || bad "two wheels of the same files differ"
+venv=$(cd "$dir" && venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+ran "$python" -m pip install --no-deps --ignore-installed --target "$venv" "$wheel"
+cat >"$dir/wheel.py" <<'END'
+import importlib.metadata
+import sys
+
+import adcgs
+
+with adcgs.open(sys.argv[1]) as stream:
+    print(adcgs.frame_digest(stream.render(0.0)))
+print(adcgs.__file__, importlib.metadata.version("adcgs"))
+END
+(cd / && ran "$dir/venv/bin/python" "$dir/wheel.py" "$VECTORS/good-sys-cams.adcgs")
+digest=$(./adcgs-dec "$VECTORS/good-sys-cams.adcgs" --md5 --camera 0 --time 0 | grep -o -w -E '[0-9a-f]{32}')
+printf '%s\n%s %s\n' "$digest" "$venv/adcgs/__init__.py" "$(sed -n 's/^PACKAGE_VERSION = //p' Makefile)" | diff - "$dir/log" ||
+    bad "the package of the wheel"
+[ -e "$venv/adcgs/py.typed" ] && [ -e "$venv/adcgs/libadcgs.so" ] || bad "files of the wheel"
+[ -z "$(cd "$source/python" && find . -name '*.egg-info' -o -name build)" ] || bad "the wheel left files in the source tree"
 exit $failed
