@@ -40,7 +40,7 @@ static int is_program(char path[PATH_MAX], const char *folder, size_t length, co
     return n > 0 && n < PATH_MAX && !access(path, X_OK);
 }
 
-/** The folder of this program, with links followed where the system tells; empty if it was found in PATH. */
+/** The folder of this program: of the file itself where there is /proc, else of the name by which it was called. May be empty. */
 static void find_folder(char folder[PATH_MAX], const char *called)
 {
     const ssize_t n = readlink("/proc/self/exe", folder, PATH_MAX - 1);
@@ -91,7 +91,7 @@ static size_t edit_distance(const char *a, const char *b)
     return row[n];
 }
 
-/** The verb that the word was meant to be: its beginning or its continuation, else one of at most two other characters. */
+/** The verb that begins with the word, or that begins the word; else the nearest one within two characters; else NULL. */
 static const char *nearest(const char *word)
 {
     const char *found = NULL;
@@ -114,8 +114,8 @@ static int refuse(const adcgs_cli *cli, const char *word)
 {
     for (size_t i = 0; i < ADCGS_COUNTOF(verbs); i++)
         if (!strcmp(verbs[i].name, word))
-            return adcgs_cli_error(cli, ADCGS_ERR_UNSUPPORTED, "adcgs-%s is neither beside this program nor in PATH: install it",
-                                   word);
+            return adcgs_cli_error(cli, ADCGS_ERR_UNSUPPORTED,
+                                   "adcgs-%s is neither in the folder of this program nor in PATH: install it", word);
     const char *meant = nearest(word);
     if (meant)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: unknown verb; the nearest is %s; try 'adcgs help'", word, meant);

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs VERB runs adcgs-VERB, beside it or in PATH, with arguments and exit status unchanged. It lists the verbs, and suggests one
+# adcgs VERB runs adcgs-VERB, from its own folder or from PATH, with arguments and exit status unchanged. It lists the verbs, and suggests one
 # for an unknown one.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs adcgs-dec adcgs-info
@@ -54,7 +54,7 @@ cp adcgs "$dir/alone"
 printf '#!/bin/sh\necho "$@"\nexit 7\n' >"$dir/path/adcgs-mine"
 chmod +x "$dir/path/adcgs-mine"
 cp "$dir/path/adcgs-mine" "$dir/path/adcgs-dec"
-expect 5 "adcgs: adcgs-enc is neither beside" env PATH="$dir/path" "$dir/alone/adcgs" enc
+expect 5 "adcgs: adcgs-enc is neither in the folder" env PATH="$dir/path" "$dir/alone/adcgs" enc
 "$dir/alone/adcgs" help | grep '^  enc ' && bad "a verb without its program is listed"
 env PATH="/nowhere::$dir/path" "$dir/alone/adcgs" mine "a  b" -h >"$dir/out"
 [ $? -eq 7 ] && [ "$(cat "$dir/out")" = "a  b -h" ] || bad "a program of PATH"
