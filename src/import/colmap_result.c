@@ -214,7 +214,7 @@ static adcgs_status list_posed(adcgs_poses *poses, const adcgs_import_job *job)
     if (poses->n < least)
         return adcgs_fail(job->error, ADCGS_ERR_DATA,
                           "COLMAP found where %u of %u %s were, expected at least %u; check that "
-                          "they show the same objects from different positions. Its output is in %s",
+                          "they show the same objects from different positions. COLMAP's output is in %s",
                           poses->n, stands ? job->sources.n_cameras : job->sources.n, stands ? "cameras" : "images", least,
                           job->log);
     const uint32_t every = (uint32_t)job->options->test_every;
@@ -297,7 +297,7 @@ adcgs_status adcgs_poses_read(adcgs_poses *out, adcgs_import_job *job)
     if (status == ADCGS_OK && !place.folder)
         status = adcgs_fail(job->error, ADCGS_ERR_DATA,
                             "COLMAP found no cameras; check that images show the same objects "
-                            "from different positions. Its output is in %s",
+                            "from different positions. COLMAP's output is in %s",
                             job->log);
     if (status == ADCGS_OK)
         status = list_posed(out, job);

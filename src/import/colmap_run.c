@@ -34,6 +34,7 @@ typedef struct step {
     int n;            /* number of words */
     char *words[WORDS_MAX + 1];
     FILE *log;
+    int no_pair;    /* the mapper found no two images to begin with */
     char last[200]; /* last line with an error */
 } step;
 
@@ -65,6 +66,7 @@ static int hear(void *user, const char *line)
         adcgs_progress_show(job->progress, "%-9s %6d/%d", s->name, n,
                             *open == '[' && slash ? atoi(slash + 1) : (int)job->sources.n);
     }
+    s->no_pair |= strstr(line, "No good initial image pair") || strstr(line, "failed to create sparse model");
     if (strstr(line, "ERROR") || strstr(line, "rror:") || strstr(line, "Failed"))
         snprintf(s->last, sizeof s->last, "%.199s", line);
     return adcgs_interrupted();
@@ -86,6 +88,11 @@ static adcgs_status run(step *s)
     ADCGS_TRY(adcgs_import_goes_on(job));
     if (!code)
         return ADCGS_OK;
+    if (s->no_pair)
+        return adcgs_fail(job->error, ADCGS_ERR_DATA,
+                          "no two images have enough parallax: the camera hardly moves sideways; walk around the subject, "
+                          "or choose a longer piece. COLMAP's output is in %s",
+                          job->log);
     return adcgs_fail(job->error, ADCGS_ERR_DATA, "%s %s failed with exit code %d%s%s; its output is in %s", s->words[0],
                       s->words[1], code, *s->last ? ": " : "", s->last, job->log);
 }
