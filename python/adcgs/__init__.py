@@ -9,16 +9,17 @@
         for time, frame in stream.frames():
             ...
 
-help(adcgs.open) describes how to open a stream, help(adcgs.Decoder) how to query it, help(adcgs.encode) how to make one. Arrays are NumPy's. Calls that return no
-array (info, cameras, metadata, digests of models and splats) work without NumPy. ADCGS_LIBRARY selects another libadcgs.so than
-the one installed with this package.
+help(adcgs.open) describes how to open a stream, help(adcgs.Decoder) how to query it, help(adcgs.encode) how to make one.
+Arrays are NumPy's. Calls that return no array (info, cameras, metadata, digests of models and splats) work without NumPy.
+ADCGS_LIBRARY selects another libadcgs.so than the one installed with this package.
 """
 from ._library import lib as _lib
 from .camera import Camera
-from .decoder import (Bytes, Decoder, Info, Pool, PushDecoder, Splats, frame_digest, frame_to_u8, open, open_push)
+from .decoder import Bytes, Decoder, Info, Pool, PushDecoder, Splats, open, open_push
 from .encoder import encode
 from .errors import (DataError, Error, FloatError, InternalError, LimitError, NoMemoryError, ReadError, TruncatedError,
                      UnsupportedError, UsageError)
+from .frames import frame_digest, frame_to_u8
 
 __version__ = _lib.adcgs_version_string().decode()
 

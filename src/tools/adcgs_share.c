@@ -147,76 +147,79 @@ static adcgs_status share(const settings *s, const char *path, adcgs_error *erro
     return status;
 }
 
-int main(int argc, char **argv)
+/** Fills the table of options, with targets in s. */
+static void list_options(adcgs_option_table *out, settings *s)
 {
-    settings s = {.page = PAGE_FILE};
-    const adcgs_option options[] = {
-        {.name = "output",
-         .letter = 'o',
-         .kind = ADCGS_OPTION_STRING,
-         .target = &s.output,
-         .value = "PAGE.html",
-         .help = "page to write"},
+    const adcgs_option table[] = {
+        {"output", 'o', ADCGS_OPTION_STRING, &s->output, 0, 0, "PAGE.html", "page to write", NULL, NULL},
         {.name = "title",
          .kind = ADCGS_OPTION_STRING,
-         .target = &s.title,
+         .target = &s->title,
          .value = "TEXT",
          .help = "title of the page (default: the file's name without its ending)"},
         {.name = "credit",
          .kind = ADCGS_OPTION_STRING,
-         .target = &s.credit,
+         .target = &s->credit,
          .value = "TEXT",
          .help = "line below the title: who made it"},
         {.name = "camera",
          .letter = 'c',
          .kind = ADCGS_OPTION_STRING,
-         .target = &s.camera,
+         .target = &s->camera,
          .value = "NAME|INDEX",
          .help = "stored camera of the first view"},
         {.name = "time",
          .letter = 't',
          .kind = ADCGS_OPTION_SECONDS,
-         .target = &s.time,
+         .target = &s->time,
          .min = -1e9,
          .max = 1e9,
-         .given = &s.has_time,
+         .given = &s->has_time,
          .value = "TIME",
          .help = "time of the first frame (default: the stream's first)"},
         {.name = "poster",
          .kind = ADCGS_OPTION_FILE,
-         .target = &s.poster,
+         .target = &s->poster,
          .value = "FILE|none",
          .help = "JPEG or PNG image to show until the scene plays\n(default: the first frame, rendered)"},
         {.name = "loop",
          .kind = ADCGS_OPTION_CHOICE,
-         .target = &s.loop,
+         .target = &s->loop,
          .choices = on_off,
          .value = "on|off",
          .help = "whether the scene plays in a loop"},
         {.name = "background",
          .kind = ADCGS_OPTION_STRING,
-         .target = &s.background,
+         .target = &s->background,
          .value = "#rrggbb",
          .help = "colour of the page around the image"},
         {.name = "image",
          .kind = ADCGS_OPTION_STRING,
-         .target = &s.image,
+         .target = &s->image,
          .value = "URL",
          .help = "image that a link to the page shows (default: the poster,\nwhich few services read from the page itself)"},
         {.name = "page",
          .kind = ADCGS_OPTION_STRING,
-         .target = &s.page,
+         .target = &s->page,
          .value = "FILE",
          .help = "page that receives the scene, by default the installed one:\n" PAGE_FILE},
     };
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
+}
+
+int main(int argc, char **argv)
+{
+    settings s = {.page = PAGE_FILE};
+    adcgs_option_table options = {.n = 0};
+    list_options(&options, &s);
     const adcgs_cli cli = {.program = "adcgs-share",
                            .operands = "[FILE]",
                            .summary = "Make a page for browsers of a stream: one file with the decoder and the scene.",
                            .details = "Without FILE the page has no scene: it shows files that are dropped on it,\n"
                                       "and, on a web server, the stream of ?src=URL.\n"
                                       "Exit status: 0 done, 2 usage, 3 input or output, 4 invalid stream or page, 5 unsupported.",
-                           .options = options,
-                           .n_options = ADCGS_COUNTOF(options),
+                           .options = options.rows,
+                           .n_options = options.n,
                            .min_operands = 0,
                            .max_operands = 1,
                            .quiet = &s.quiet};
