@@ -60,8 +60,8 @@ typedef struct adcgs_cli {
     const adcgs_option *options;
     size_t n_options; /**< at most ADCGS_OPTIONS_MAX */
     int min_operands, max_operands;
-    const char *const *operand_words; /**< words of the first operand, ended by NULL, for completion; NULL: it is a file */
     int *quiet;                       /**< set to 1 by --quiet, which suppresses progress and remarks; NULL: no such option */
+    const char *const *operand_words; /**< words of the first operand, ended by NULL, for completion; NULL: it is a file */
 } adcgs_cli;
 
 /**
