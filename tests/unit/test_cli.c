@@ -103,7 +103,14 @@ static int parse(values *v, const char *const *words, int *first)
         {"size", 's', ADCGS_OPTION_SIZE, &v->size, 1, 1e6, "BYTES", "a size", NULL, NULL},
         {"colour", 0, ADCGS_OPTION_CHOICE, &v->choice, 0, 0, "NAME", "a name", choices, NULL},
     };
-    const adcgs_cli cli = {"prog", "FILE", "Does it.", NULL, options, ADCGS_COUNTOF(options), 1, 2, v->quiet};
+    const adcgs_cli cli = {.program = "prog",
+                           .operands = "FILE",
+                           .summary = "Does it.",
+                           .options = options,
+                           .n_options = ADCGS_COUNTOF(options),
+                           .min_operands = 1,
+                           .max_operands = 2,
+                           .quiet = v->quiet};
     static char copies[12][64];
     char *argv[13] = {copies[0]};
     int argc = 1;
