@@ -6,6 +6,8 @@
 
 #include "cli/text.h"
 #include "io/atomic.h"
+#include "io/base64.h"
+#include "io/file.h"
 #include "sweep/charts.h"
 
 #include <math.h>
@@ -13,6 +15,8 @@
 #include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
+
+#define PICTURE_BYTES_MAX ((uint64_t)1 << 30) /* bytes of an image for the page */
 
 /** Output of a report: plain text, or HTML if html is set. */
 typedef struct sheet {
@@ -248,24 +252,14 @@ static void print_chart(const sheet *s, const adcgs_sweep *sweep, const adcgs_ch
     fclose(svg);
 }
 
-/** Writes a file in the digits of base 64 (RFC 4648). */
-static void put_base64(FILE *out, FILE *in)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    unsigned char bytes[3];
-    for (size_t n; (n = fread(bytes, 1, 3, in)) > 0;) {
-        const uint32_t all = (uint32_t)bytes[0] << 16 | (n > 1 ? (uint32_t)bytes[1] << 8 : 0) | (n > 2 ? bytes[2] : 0);
-        for (size_t i = 0; i < 4; i++)
-            fputc(i <= n ? digits[all >> (18 - 6 * i) & 63] : '=', out);
-    }
-}
-
 /** Prints an image that a click enlarges to full size and reduces again, by a hidden checkbox, without scripts. */
 static void print_picture(const sheet *s, const adcgs_sweep_picture *p)
 {
     char text[200];
-    FILE *const file = p->is_there ? fopen(p->path, "rb") : NULL;
-    if (!file)
+    uint8_t *data;
+    size_t bytes;
+    adcgs_error error;
+    if (!p->is_there || adcgs_file_load(&data, &bytes, p->path, PICTURE_BYTES_MAX, &error) != ADCGS_OK)
         return;
     const int n = snprintf(text, sizeof text, "The %s of the test views of %s: %.2f dB", p->name, p->run, p->psnr);
     if (isfinite(p->time))
@@ -273,11 +267,11 @@ static void print_picture(const sheet *s, const adcgs_sweep_picture *p)
     fprintf(s->file, "<figure><label><input type=\"checkbox\"><img alt=\"");
     put_escaped(s, text);
     fprintf(s->file, "\" src=\"data:image/png;base64,");
-    put_base64(s->file, file);
+    adcgs_base64_write(s->file, data, bytes, 0);
     fprintf(s->file, "\"></label><figcaption>");
     put_escaped(s, text);
     fprintf(s->file, ". Truth, decoded, four times their difference; click it for full size.</figcaption></figure>\n");
-    fclose(file);
+    free(data);
 }
 
 /** Finds the processor's name, if the system provides it. */

@@ -4,6 +4,7 @@
 
 #include "tools/share_page.h"
 
+#include "io/base64.h"
 #include "tools/share_text.h"
 
 /* The places of the page, in their order. */
@@ -43,7 +44,7 @@ static void write_title(FILE *file, const adcgs_share_scene *scene, void (*write
     write(file, scene->title ? scene->title : text);
 }
 
-/** Writes the description: what a link to the page says below its title. */
+/** Writes the description, which stands below the title of a link to the page. */
 static void write_description(FILE *file, const adcgs_share_scene *scene)
 {
     fputs(scene->name ? "A scene in motion: play it, and look at it from any side." : "A player for scenes in motion.", file);
@@ -56,7 +57,7 @@ static void write_description(FILE *file, const adcgs_share_scene *scene)
 static void write_poster_address(FILE *file, const adcgs_share_poster *poster)
 {
     fprintf(file, "data:%s;base64,", poster->type);
-    adcgs_share_base64(file, poster->data, poster->bytes, 0);
+    adcgs_base64_write(file, poster->data, poster->bytes, 0);
 }
 
 /** Writes the settings that the page's script reads. */
@@ -135,7 +136,7 @@ static void write_scene(FILE *file, const adcgs_share_scene *scene)
     fputs("<script type=\"text/plain\" id=\"scene\" data-name=\"", file);
     adcgs_share_html(file, name_of(scene));
     fputs("\">\n", file);
-    adcgs_share_base64(file, scene->data, scene->bytes, 1);
+    adcgs_base64_write(file, scene->data, scene->bytes, 1);
     fputs("</script>\n", file);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Texts and bytes in a page. */
+/** \file Texts in a page. */
 #include "config.h"
 
 #include "tools/share_text.h"
@@ -40,18 +40,4 @@ void adcgs_share_json(FILE *file, const char *text)
         else
             fputc(*text, file);
     fputc('"', file);
-}
-
-void adcgs_share_base64(FILE *file, const uint8_t *data, size_t bytes, int lines)
-{
-    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < bytes; i += 3) {
-        const size_t n = ADCGS_MIN(bytes - i, 3);
-        const uint32_t three = (uint32_t)data[i] << 16 | (uint32_t)(n > 1 ? data[i + 1] : 0) << 8 | (n > 2 ? data[i + 2] : 0);
-        const char four[4] = {letters[three >> 18], letters[three >> 12 & 63], n > 1 ? letters[three >> 6 & 63] : '=',
-                              n > 2 ? letters[three & 63] : '='};
-        fwrite(four, 1, sizeof four, file);
-        if (lines && (i % 57 == 54 || i + 3 >= bytes))
-            fputc('\n', file);
-    }
 }

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Bytes in the letters of base 64 (RFC 4648). */
+#ifndef ADCGS_IO_BASE64_H
+#define ADCGS_IO_BASE64_H
+
+#include "base/base.h"
+
+#include <stdio.h>
+
+/** Writes base 64 with its padding, in lines of 76 letters (RFC 2045) if lines is not 0. */
+void adcgs_base64_write(FILE *file, const uint8_t *data, size_t bytes, int lines);
+
+#endif
