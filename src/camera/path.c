@@ -56,21 +56,21 @@ static void turn_camera(adcgs_camera *camera, const adcgs_info *info, const doub
     }
 }
 
-static adcgs_status find_stored(const adcgs_decoder *decoder, const adcgs_info *info, const char *wanted, adcgs_camera *camera,
-                                adcgs_error *error)
+adcgs_status adcgs_camera_find_stored(int *index, const adcgs_decoder *decoder, const adcgs_info *info, const char *wanted,
+                                      const char *advice, adcgs_error *error)
 {
-    int index;
-    for (int i = 0; i < info->cameras; i++) {
-        ADCGS_TRY(adcgs_get_camera(decoder, i, camera, error));
-        if (!strcmp(camera->name, wanted))
+    adcgs_camera camera;
+    for (*index = 0; *index < info->cameras; ++*index) {
+        ADCGS_TRY(adcgs_get_camera(decoder, *index, &camera, error));
+        if (!strcmp(camera.name, wanted))
             return ADCGS_OK;
     }
     if (!info->cameras)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--camera %s: the stream stores no cameras; try --camera orbit", wanted);
-    if (adcgs_parse_int(wanted, 0, info->cameras - 1, &index))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--camera %s: the stream stores no cameras%s", wanted, advice);
+    if (adcgs_parse_int(wanted, 0, info->cameras - 1, index))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--camera %s: neither a stored camera's name nor an index from 0 to %d", wanted,
                           info->cameras - 1);
-    return adcgs_get_camera(decoder, index, camera, error);
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_camera_path_times(adcgs_camera_path *out, const adcgs_info *info, const adcgs_camera_path_request *request,
@@ -151,10 +151,10 @@ static adcgs_status make_from_camera(adcgs_camera_path *out, const adcgs_decoder
                                      const adcgs_camera_path_request *request, adcgs_error *error)
 {
     adcgs_camera camera;
+    int index = 0;
     if (request->camera)
-        ADCGS_TRY(find_stored(decoder, info, request->camera, &camera, error));
-    else
-        ADCGS_TRY(adcgs_get_camera(decoder, 0, &camera, error));
+        ADCGS_TRY(adcgs_camera_find_stored(&index, decoder, info, request->camera, "; try --camera orbit", error));
+    ADCGS_TRY(adcgs_get_camera(decoder, index, &camera, error));
     ADCGS_TRY(adcgs_camera_path_times(out, info, request, ADCGS_PATH_FIXED, error));
     for (int i = 0; i < out->n; i++)
         out->frame[i].camera = camera;

@@ -42,6 +42,12 @@ typedef struct adcgs_camera_path_request {
     int fill;          /**< parameter of adcgs_camera_fit() */
 } adcgs_camera_path_request;
 
+/**
+ * The index of the stored camera with this name, else number. Otherwise ADCGS_ERR_USAGE; advice follows the message if the stream
+ * stores no cameras.
+ */
+adcgs_status adcgs_camera_find_stored(int *index, const adcgs_decoder *decoder, const adcgs_info *info, const char *wanted,
+                                      const char *advice, adcgs_error *error);
 /** ADCGS_ERR_USAGE if times are given and none of them is in the stream. */
 adcgs_status adcgs_camera_path_check_times(const adcgs_info *info, const adcgs_camera_path_request *request, adcgs_error *error);
 adcgs_status adcgs_camera_path_make(adcgs_camera_path *out, const adcgs_decoder *decoder,

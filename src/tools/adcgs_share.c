@@ -2,6 +2,7 @@
 /** \file adcgs-share: makes a page for browsers of a stream, in one file. */
 #include "config.h"
 
+#include "camera/path.h"
 #include "cli/cli.h"
 #include "io/atomic.h"
 #include "io/file.h"
@@ -53,7 +54,7 @@ static adcgs_status prepare_view(const settings *s, adcgs_share_scene *scene, co
                                  adcgs_error *error)
 {
     if (s->camera)
-        ADCGS_TRY(adcgs_share_find_camera(&scene->camera, decoder, s->camera, error));
+        ADCGS_TRY(adcgs_camera_find_stored(&scene->camera, decoder, info, s->camera, "", error));
     if (s->has_time && (s->time < info->time_start || s->time > info->time_end))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %g: the stream lasts from %g to %g s", s->time, info->time_start,
                           info->time_end);

@@ -6,10 +6,10 @@
 
 #include "camera/path.h"
 #include "camera/rotation.h"
-#include "cli/cli.h"
 #include "io/file.h"
 #include "io/image.h"
 #include "io/jpeg.h"
+#include "io/kind.h"
 
 #include <adcgs/adcgs.h>
 
@@ -20,24 +20,6 @@
 #define POSTER_BYTES 12000                  /* wanted size of a rendered poster */
 #define POSTER_FILE_MAX ((uint64_t)2 << 20) /* bytes of a poster from a file */
 static const int qualities[] = {80, 70, 60, 50, 40, 30};
-
-adcgs_status adcgs_share_find_camera(int *index, const adcgs_decoder *decoder, const char *wanted, adcgs_error *error)
-{
-    adcgs_info info;
-    adcgs_camera camera;
-    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
-    for (*index = 0; *index < info.cameras; ++*index) {
-        ADCGS_TRY(adcgs_get_camera(decoder, *index, &camera, error));
-        if (!strcmp(camera.name, wanted))
-            return ADCGS_OK;
-    }
-    if (!info.cameras)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--camera %s: the stream stores no cameras", wanted);
-    if (adcgs_parse_int(wanted, 0, info.cameras - 1, index))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--camera %s: neither a stored camera's name nor an index from 0 to %d", wanted,
-                          info.cameras - 1);
-    return ADCGS_OK;
-}
 
 /** The camera of the page's first view, at the poster's size. */
 static adcgs_status make_view(adcgs_camera *camera, const adcgs_share_scene *scene, const adcgs_decoder *decoder, double time,
@@ -102,13 +84,14 @@ adcgs_status adcgs_share_render_poster(adcgs_share_scene *scene, adcgs_decoder *
 
 adcgs_status adcgs_share_load_poster(adcgs_share_scene *scene, const char *path, adcgs_error *error)
 {
-    static const uint8_t png[] = {0x89, 'P', 'N', 'G'}, jpeg[] = {0xff, 0xd8, 0xff};
     adcgs_share_poster *poster = &scene->poster;
     int channels;
     ADCGS_TRY(adcgs_file_load(&poster->data, &poster->bytes, path, POSTER_FILE_MAX, error));
-    if (poster->bytes > sizeof png && !memcmp(poster->data, png, sizeof png))
+    const char *const format =
+        adcgs_kind_of(poster->data, ADCGS_MIN(poster->bytes, ADCGS_KIND_BYTES), poster->bytes, NULL, path)->reader;
+    if (format && !strcmp(format, "png"))
         poster->type = "image/png";
-    else if (poster->bytes > sizeof jpeg && !memcmp(poster->data, jpeg, sizeof jpeg))
+    else if (format && !strcmp(format, "jpeg"))
         poster->type = "image/jpeg";
     else
         return adcgs_fail(error, ADCGS_ERR_DATA, "%.160s: no poster, expected a JPEG or PNG image", path);
