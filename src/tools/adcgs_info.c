@@ -154,11 +154,12 @@ static void print_networks(const adcgs_model *m)
 
 static adcgs_status print_segments(const adcgs_info_report *r, adcgs_error *error)
 {
+    size_t at = 0;
     for (uint32_t i = 0; i < r->stream.n_segments; i++) {
         const adcgs_model *m = &r->stream.segments[i];
         printf("\nsegment %u: %g .. %g s, %u anchors, depth %u, voxel %g, %u Gaussians, %d layer%s, %llu bytes\n", i,
                m->time_start, m->time_end, m->n, m->depth, (double)m->voxel, adcgs_info_count_gaussians(m), m->layers,
-               adcgs_s((uint64_t)m->layers), (unsigned long long)adcgs_info_segment_bytes(r, i));
+               adcgs_s((uint64_t)m->layers), (unsigned long long)adcgs_info_segment_bytes(r, i, &at));
         if (m->reach > 0)
             printf("  crossfade of %g s into the next\n", m->reach);
         uint32_t same, refined;

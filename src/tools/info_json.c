@@ -54,6 +54,7 @@ static void json_bytes(adcgs_json *j, const adcgs_info_report *r)
 static adcgs_status json_segments(adcgs_json *j, const adcgs_info_report *r, adcgs_error *error)
 {
     char text[33];
+    size_t at = 0;
     adcgs_json_open(j, "segments", '[');
     for (uint32_t i = 0; i < r->stream.n_segments; i++) {
         const adcgs_model *m = &r->stream.segments[i];
@@ -64,7 +65,7 @@ static adcgs_status json_segments(adcgs_json *j, const adcgs_info_report *r, adc
         adcgs_json_real(j, "crossfade", m->reach);
         adcgs_json_int(j, "anchors", m->n);
         adcgs_json_int(j, "gaussians", adcgs_info_count_gaussians(m));
-        adcgs_json_int(j, "bytes", (int64_t)adcgs_info_segment_bytes(r, i));
+        adcgs_json_int(j, "bytes", (int64_t)adcgs_info_segment_bytes(r, i, &at));
         adcgs_json_int(j, "depth", m->depth);
         adcgs_json_int(j, "layers", m->layers);
         adcgs_json_string(j, "digest", text);

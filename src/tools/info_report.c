@@ -52,17 +52,22 @@ static int is_of_stream(const char *type)
     return 0;
 }
 
-uint64_t adcgs_info_segment_bytes(const adcgs_info_report *r, uint32_t segment)
+static int begins_segment(const adcgs_info_chunk *c)
+{
+    return strcmp(c->type, "SEGM") == 0;
+}
+
+uint64_t adcgs_info_segment_bytes(const adcgs_info_report *r, uint32_t segment, size_t *at)
 {
     uint64_t bytes = 0;
-    int inside = 0;
-    for (size_t i = 0; i < r->n_chunks; i++) {
-        const adcgs_info_chunk *c = &r->chunks[i];
-        if (strcmp(c->type, "SEGM") == 0)
-            inside = c->segment == segment;
-        if (inside && !is_of_stream(c->type))
-            bytes += (uint64_t)c->bytes + ADCGS_CHUNK_BYTES;
-    }
+    while (*at < r->n_chunks && !(begins_segment(&r->chunks[*at]) && r->chunks[*at].segment >= segment))
+        ++*at;
+    if (*at == r->n_chunks || r->chunks[*at].segment != segment)
+        return 0;
+    do {
+        if (!is_of_stream(r->chunks[*at].type))
+            bytes += (uint64_t)r->chunks[*at].bytes + ADCGS_CHUNK_BYTES;
+    } while (++*at < r->n_chunks && !begins_segment(&r->chunks[*at]));
     return bytes;
 }
 

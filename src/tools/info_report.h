@@ -39,9 +39,10 @@ adcgs_status adcgs_info_kept(const adcgs_info_report *report, uint32_t segment, 
                              adcgs_error *error);
 /**
  * Bytes of a segment's chunks with their headers, from its SEGM to the next one. Header, cameras, metadata and index belong to
- * the stream. NETW may have another segment's number, so its place counts.
+ * the stream. NETW may have another segment's number, so its place counts. *at: 0 for the first segment, then as the call for the
+ * previous one left it, so that all segments take one pass over the chunks.
  */
-uint64_t adcgs_info_segment_bytes(const adcgs_info_report *report, uint32_t segment);
+uint64_t adcgs_info_segment_bytes(const adcgs_info_report *report, uint32_t segment, size_t *at);
 /** Writes the digest of a segment's model in hexadecimal digits. */
 void adcgs_info_digest(const adcgs_info_report *report, uint32_t segment, char text[33]);
 
