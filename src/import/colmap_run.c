@@ -66,7 +66,7 @@ static int hear(void *user, const char *line)
         adcgs_progress_show(job->progress, "%-9s %6d/%d", s->name, n,
                             *open == '[' && slash ? atoi(slash + 1) : (int)job->sources.n);
     }
-    s->no_pair |= strstr(line, "No good initial image pair") || strstr(line, "failed to create sparse model");
+    s->no_pair |= strstr(line, "No good initial image pair") != NULL;
     if (strstr(line, "ERROR") || strstr(line, "rror:") || strstr(line, "Failed"))
         snprintf(s->last, sizeof s->last, "%.199s", line);
     return adcgs_interrupted();
