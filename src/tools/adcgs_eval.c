@@ -39,10 +39,9 @@ typedef struct report {
 
 static const char *const splits[] = {"train", "val", "test", NULL}; /* in the order of adcgs_split */
 
-#define OPTION_COUNT 15
-static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
+static void list_options(adcgs_option_table *out, settings *s)
 {
-    const adcgs_option table[OPTION_COUNT] = {
+    const adcgs_option table[] = {
         {"split", 0, ADCGS_OPTION_CHOICE, &s->split, 0, 0, "NAME", "views to compare: test, val or train (default test)", splits,
          NULL},
         {"dataset", 0, ADCGS_OPTION_CHOICE, &s->dataset, 0, 0, "KIND",
@@ -75,7 +74,7 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"csv", 0, ADCGS_OPTION_FILE, &s->csv, 0, 0, "FILE", "table with a row for each view; - prints it", NULL, NULL},
         {"json", 0, ADCGS_OPTION_FLAG, &s->json, 0, 0, NULL, "print one JSON object", NULL, NULL},
     };
-    memcpy(options, table, sizeof table);
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
 
 static adcgs_status write_views(const report *r, const adcgs_view_score *score, const char *path, adcgs_error *error)
@@ -246,16 +245,16 @@ static adcgs_status run(const settings *s, adcgs_error *error)
 int main(int argc, char **argv)
 {
     settings s = {.split = ADCGS_SPLIT_TEST};
-    adcgs_option options[OPTION_COUNT];
+    adcgs_option_table options = {.n = 0};
     adcgs_config_init(&s.config, sizeof s.config);
-    make_options(&s, options);
+    list_options(&options, &s);
     const adcgs_cli cli = {.program = "adcgs-eval",
                            .operands = "FILE SCENE",
                            .summary = "Render the views of a scene from a stream and compare them with its images.",
                            .details = "PSNR and SSIM are of frames rounded to 8 bits; speed is 1 / the median render time.\n"
                                       "Exit status: 0 done, 2 usage, 3 input or output, 4 invalid data, 5 unsupported.",
-                           .options = options,
-                           .n_options = OPTION_COUNT,
+                           .options = options.rows,
+                           .n_options = options.n,
                            .min_operands = 2,
                            .max_operands = 2,
                            .quiet = &s.quiet};
