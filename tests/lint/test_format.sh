@@ -11,13 +11,14 @@ done
 [ -n "$tool" ] || { echo 'no clang-format 16'; exit 77; }
 [ -f .clang-format ] || { echo '.clang-format is missing' >&2; exit 1; }
 
+mapfile -t patterns < <(grep -v '^#' .clang-format-ignore)
 ignored()
 {
     local pattern
-    while read -r pattern; do
+    for pattern in "${patterns[@]}"; do
         # shellcheck disable=SC2254
         case $1 in $pattern) return 0 ;; esac
-    done < <(grep -v '^#' .clang-format-ignore)
+    done
     return 1
 }
 
