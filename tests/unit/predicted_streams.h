@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Streams of predicted segments: made, written and compared with what is read back. */
+/** \file Streams of predicted segments: made, written and compared with the streams read back. */
 #ifndef ADCGS_TESTS_PREDICTED_STREAMS_H
 #define ADCGS_TESTS_PREDICTED_STREAMS_H
 

@@ -23,6 +23,22 @@ static inline void near(float a, float b, double relative, double absolute)
         fail_msg("%.9g, expected %.9g", (double)a, (double)b);
 }
 
+/** Expects read splats to equal the written ones, within relative errors of opacities and scales, and rounding of the others. */
+static inline void same_splats(const adcgs_splats *a, const adcgs_splats *b, double opacity, double scale)
+{
+    assert_int_equal(a->n, b->n);
+    for (uint32_t i = 0; i < a->n; i++) {
+        near(a->opacity[i], b->opacity[i], opacity, 0.0);
+        for (int c = 0; c < 3; c++) {
+            assert_true(a->mean[c][i] == b->mean[c][i]);
+            near(a->scale[c][i], b->scale[c][i], scale, 0.0);
+            near(a->colour[c][i], b->colour[c][i], 0.0, 1.3e-7 * (1.0 + fabs((double)b->colour[c][i])));
+        }
+        for (int c = 0; c < 4; c++)
+            near(a->rotation[c][i], b->rotation[c][i], 0.0, 2e-7);
+    }
+}
+
 static inline float any(uint64_t *state, double lo, double hi)
 {
     return (float)(lo + (hi - lo) * (double)adcgs_random_range(state, 0, 1 << 24) / (1 << 24));

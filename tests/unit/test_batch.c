@@ -129,13 +129,6 @@ static adcgs_train_config run_config(uint32_t batch)
     return c;
 }
 
-static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
-{
-    int stopped;
-    if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
-}
-
 static void assert_ends_alike(adcgs_trainer *a, adcgs_trainer *b)
 {
     adcgs_buffer ends[2];
@@ -154,17 +147,17 @@ static void runs_end_alike(void **state)
     for (uint32_t batch = 2; batch <= 3; batch++) {
         const adcgs_train_config config = run_config(batch);
         adcgs_trainer *through = make_trainer(&config, pool), *stopping = make_trainer(&config, NULL);
-        run(through, NULL, NULL);
+        run_trainer(through, NULL, NULL);
         for (uint32_t stop = 10; stop < config.iterations; stop += 10) {
             adcgs_buffer middle;
-            run(stopping, stop_at, &stop);
+            run_trainer(stopping, stop_at, &stop);
             store(stopping, &middle);
             adcgs_trainer_free(&stopping);
             stopping = make_trainer(&config, NULL);
             assert_int_equal(adcgs_trainer_restore(stopping, middle.data, middle.size, &error), ADCGS_OK);
             adcgs_buffer_clear(&middle);
         }
-        run(stopping, NULL, NULL);
+        run_trainer(stopping, NULL, NULL);
         assert_ends_alike(through, stopping);
         adcgs_trainer_free(&through);
         adcgs_trainer_free(&stopping);
@@ -256,7 +249,7 @@ static void teams_end_as_one(void **state)
         adcgs_trainer *alone = make_trainer(&config, pool);
         member team[TEAM_MOST];
         board b;
-        run(alone, NULL, NULL);
+        run_trainer(alone, NULL, NULL);
         for (int r = 0; r < size; r++)
             team[r] = (member){.t = make_trainer(&config, NULL), .observe = r ? NULL : stop_at, .stop = 20};
         run_team(team, size, &b);

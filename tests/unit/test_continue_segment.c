@@ -35,13 +35,6 @@ static adcgs_trainer *make(const adcgs_train_config *config, const adcgs_model *
     return t;
 }
 
-static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
-{
-    int stopped;
-    if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
-}
-
 /** The model at the end of a run. */
 static void take_model(adcgs_model *model, const adcgs_fmodel *f)
 {
@@ -55,7 +48,7 @@ static void learn(adcgs_model *model, const adcgs_model *before)
 {
     const adcgs_train_config config = follow_config();
     adcgs_trainer *t = make(&config, before, pool);
-    run(t, NULL, NULL);
+    run_trainer(t, NULL, NULL);
     take_model(model, t->f);
     adcgs_trainer_free(&t);
 }
@@ -130,7 +123,7 @@ static void what_is_settled_is_kept(void **state)
     const uint32_t first = settled(t->f);
     assert_true(first > 0 && first <= before.n);
     t->unfreeze_tests = UINT8_MAX; /* a run this short leaves large errors, and would unfreeze everything */
-    run(t, NULL, NULL);
+    run_trainer(t, NULL, NULL);
     take_model(&model, t->f);
     assert_true(adcgs_inter_possible(&before, &model, &error));
     assert_int_equal(adcgs_inter_find(&kept, &before, &model, &error), ADCGS_OK);
@@ -152,15 +145,15 @@ static void stopping_changes_nothing(void **state)
     (void)state;
     learn(&before, NULL);
     adcgs_trainer *through = make(&config, &before, pool), *stopping = make(&config, &before, NULL);
-    run(through, NULL, NULL);
+    run_trainer(through, NULL, NULL);
     store(through, &end);
     for (size_t i = 0; i < ADCGS_COUNTOF(stops); i++) {
         uint32_t stop = stops[i];
-        run(stopping, stop_at, &stop);
+        run_trainer(stopping, stop_at, &stop);
         store(stopping, &middle);
         adcgs_trainer *restored = make(&config, &before, pool);
         assert_int_equal(adcgs_trainer_restore(restored, middle.data, middle.size, &error), ADCGS_OK);
-        run(restored, NULL, NULL);
+        run_trainer(restored, NULL, NULL);
         store(restored, &again);
         assert_int_equal(again.size, end.size);
         assert_memory_equal(again.data, end.data, end.size);

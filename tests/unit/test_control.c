@@ -192,13 +192,6 @@ static uint64_t final_bytes(const adcgs_trainer *t)
     return bytes.total;
 }
 
-static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
-{
-    int stopped;
-    if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
-}
-
 /** More anchors than a size can hold after so short a run: levels or anchors have to be reduced. */
 static adcgs_train_config roomy_config(adcgs_train_target target, double value)
 {
@@ -213,7 +206,7 @@ static void runs_land_on_sizes(void **state)
     for (int size = 8000; size <= 16000; size += 8000) {
         const adcgs_train_config config = roomy_config(ADCGS_TARGET_SIZE, size);
         adcgs_trainer *t = make(&config, real_bytes);
-        run(t, NULL, NULL);
+        run_trainer(t, NULL, NULL);
         const uint64_t bytes = final_bytes(t);
         print_message("target %d bytes, result %llu bytes\n", size, (unsigned long long)bytes);
         assert_true(bytes <= (uint64_t)size && bytes > 0.97 * size);
@@ -227,7 +220,7 @@ static void runs_land_without_rounding(void **state)
     adcgs_train_config config = roomy_config(ADCGS_TARGET_SIZE, 12000);
     config.quant_round_start = config.freeze_start = 1.5f;
     adcgs_trainer *t = make(&config, real_bytes);
-    run(t, NULL, NULL);
+    run_trainer(t, NULL, NULL);
     print_message("target 12000 bytes, result %llu bytes\n", (unsigned long long)final_bytes(t));
     assert_true(final_bytes(t) <= 12000 && final_bytes(t) > 0.97 * 12000);
     adcgs_trainer_free(&t);
@@ -238,7 +231,7 @@ static void runs_land_on_qualities(void **state)
     const adcgs_train_config config = roomy_config(ADCGS_TARGET_PSNR, 22);
     adcgs_trainer *t = make(&config, real_bytes);
     double psnr;
-    run(t, NULL, NULL);
+    run_trainer(t, NULL, NULL);
     assert_int_equal(adcgs_sample_psnr(t, UINT32_MAX, &psnr, &error), ADCGS_OK);
     print_message("target 22 dB, result %.3f dB\n", psnr);
     assert_true(psnr > 21.95 && psnr < 22.05);
@@ -254,7 +247,7 @@ static adcgs_trainer *run_in_pieces(const adcgs_train_config *config)
         uint32_t stop = stops[i];
         adcgs_buffer middle;
         adcgs_buffer_init(&middle);
-        run(t, stop_at, &stop);
+        run_trainer(t, stop_at, &stop);
         assert_int_equal(t->iteration, stop);
         assert_int_equal(adcgs_trainer_store(t, &middle, &error), ADCGS_OK);
         adcgs_trainer_free(&t);
@@ -262,7 +255,7 @@ static adcgs_trainer *run_in_pieces(const adcgs_train_config *config)
         assert_int_equal(adcgs_trainer_restore(t, middle.data, middle.size, &error), ADCGS_OK);
         adcgs_buffer_clear(&middle);
     }
-    run(t, NULL, NULL);
+    run_trainer(t, NULL, NULL);
     return t;
 }
 
@@ -274,7 +267,7 @@ static void stopping_changes_nothing(void **state)
         adcgs_train_config config = roomy_config((adcgs_train_target)target, values[target]);
         config.max_anchors = 300; /* bytes need not meet the target, only be the same */
         adcgs_trainer *through = make(&config, real_bytes), *pieces = run_in_pieces(&config);
-        run(through, NULL, NULL);
+        run_trainer(through, NULL, NULL);
         assert_true(pieces->lambda == through->lambda && final_bytes(pieces) == final_bytes(through));
         assert_memory_equal(pieces->f->param[ADCGS_P_FV].p, through->f->param[ADCGS_P_FV].p,
                             pieces->f->param[ADCGS_P_FV].n * sizeof(float));

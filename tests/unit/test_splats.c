@@ -92,7 +92,7 @@ static void test_round_trip(void **state)
     adcgs_splats s = random_splats(1000, 30.0, -500.0, 3), back;
     expect_good(write_splats(&s, in("w.ply")));
     expect_good(adcgs_splats_read(&back, in("w.ply"), &error));
-    same_splats(&back, &s);
+    same_splats(&back, &s, OPACITY_ERROR, SCALE_ERROR);
     adcgs_splats_free(&back);
     s.opacity[7] = 1.0f;
     expect_error(write_splats(&s, in("w2.ply")), ADCGS_ERR_UNSUPPORTED, "w2.ply", "splat 7");
@@ -120,7 +120,7 @@ static void test_rest(void **state)
         free(file);
         expect_good(adcgs_splats_read(&back, in("r.ply"), &error));
         assert_true(back.degree == 0 && !back.harmonics);
-        same_splats(&back, &s);
+        same_splats(&back, &s, OPACITY_ERROR, SCALE_ERROR);
         adcgs_splats_free(&back);
     }
     adcgs_splats_free(&s);

@@ -71,6 +71,15 @@ static inline adcgs_trainer *make_trainer(const adcgs_train_config *config, adcg
     return t;
 }
 
+/** Runs to the end, or until the observer stops it. \return whether it was stopped. */
+static inline int run_trainer(adcgs_trainer *t, adcgs_train_observe observe, void *user)
+{
+    int stopped;
+    if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    return stopped;
+}
+
 /** The state of a run without its time. */
 static inline void store(adcgs_trainer *t, adcgs_buffer *out)
 {

@@ -21,9 +21,7 @@ static inline adcgs_train_config all_stages_config(void)
 
 static inline void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
 {
-    int stopped;
-    if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
+    const int stopped = run_trainer(t, observe, user);
     assert_int_equal(stopped, t->iteration < t->config.iterations && !(t->config.time_limit > 0));
 }
 

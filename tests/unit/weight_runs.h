@@ -9,9 +9,7 @@
 
 static inline void go_on(adcgs_trainer *t, uint32_t stop)
 {
-    int stopped;
-    if (adcgs_trainer_run(t, stop_at, &stop, &stopped, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
+    run_trainer(t, stop_at, &stop);
 }
 
 /** A run that stopped before iteration `stop`. */
