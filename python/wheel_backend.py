@@ -2,7 +2,7 @@
 """Build backend of the package (PEP 517): a wheel that holds libadcgs. It needs no other package, so it works offline.
 
 ADCGS_LIBRARY names a libadcgs.so to use; without it the library is compiled from the sources around this folder. Only the folder
-of the wheel is written to.
+of the wheel is written to, except that a checkout without `configure` gets one.
 """
 import base64
 import hashlib

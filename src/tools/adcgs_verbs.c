@@ -124,7 +124,7 @@ static int refuse(const adcgs_cli *cli, const char *word)
 
 /* ---- Command line ---- */
 
-/** Runs adcgs-VERB with arguments, of which the first is free for its name. Returns only after a failure. */
+/** Runs adcgs-VERB with arguments; its name replaces the first one. Returns only after a failure. */
 static int run(const adcgs_cli *cli, const char *called, const char *name, char **arguments)
 {
     char path[PATH_MAX];

@@ -116,7 +116,7 @@ async function address() {
     same(got, [true, true, true, false], '?poster: nothing starts, a button, the poster; no button afterwards');
 }
 
-/** window.adcgs: what the man page says. */
+/** window.adcgs, as the man page describes it. */
 async function api() {
     await go(urlOf('share.html', query()));
     const got = await run(`await settled();
@@ -240,7 +240,7 @@ async function reducedMotion() {
     await run(`await until(() => adcgs.playing, 'playing with ?autoplay');`);
 }
 
-/** Pictures for people: of each state, in three sizes. */
+/** Screenshots for people: each state in three sizes. */
 async function pictures() {
     for (const [width, height, phone] of [[1280, 800, false], [390, 844, true], [844, 390, true]]) {
         const name = state => `page-${width}x${height}-${state}`;

@@ -18,7 +18,7 @@ expect 0 "p.html: [0-9]* bytes, with a scene of $(wc -c <"$stream") bytes" share
 scene "$dir/p.html" | cmp - "$stream" || bad "the scene is another one"
 grep -q '<title>good-tiers-slices</title>' "$dir/p.html" || bad "the title"
 grep -q 'data-name="good-tiers-slices.adcgs"' "$dir/p.html" || bad "the name"
-# bare PAGE: the page without what adcgs-share put into it.
+# bare PAGE: the page without the additions of adcgs-share.
 bare()
 {
     sed -e 's#^<title>.*</title>$#<title>adcgs</title>#' -e '/^<meta name="description"/,/^<script type="application\/json"/c\<!-- card -->' \
@@ -48,7 +48,7 @@ grep -q '^<title>&lt;/title&gt;&lt;/script&gt;&quot;--&gt;&lt;script&gt;alert(1)
     bad "a title that is markup"
 ! grep -q '<script>alert' "$dir/p.html" || bad "a text that is a script"
 bare "$dir/p.html" | cmp - "$page" || bad "a text that ends its place"
-# settings PAGE: what the page's script reads.
+# settings PAGE: the settings for the page's script.
 settings() { sed -n 's#^<script type="application/json" id="settings">\(.*\)</script>$#\1#p' "$1"; }
 "${PYTHON-python3}" - "$evil" "$(settings "$dir/p.html")" <<'END' || bad "settings: $(settings "$dir/p.html")"
 import json, sys
