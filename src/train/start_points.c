@@ -6,7 +6,7 @@
 #include "grad/random.h"
 #include "stereo/body_pose.h"
 #include "train/scene_frame.h"
-#include "train/sight.h"
+#include "train/visibility.h"
 
 #include <math.h>
 
@@ -38,7 +38,7 @@ void adcgs_start_points_clear(adcgs_start_points *c)
 }
 
 /** Converts one of the scene's points to scene units. Returns 0 if it is too far away. */
-static int given_point(double x[3], const adcgs_sight *s, uint32_t i)
+static int given_point(double x[3], const adcgs_visibility *s, uint32_t i)
 {
     int far = 0;
     for (int a = 0; a < 3; a++) {
@@ -49,18 +49,18 @@ static int given_point(double x[3], const adcgs_sight *s, uint32_t i)
 }
 
 /** True if a camera sees any of the scene's points; at most `most` points are tested. */
-static int sees_points(const adcgs_sight *s, uint32_t most)
+static int sees_points(const adcgs_visibility *s, uint32_t most)
 {
     const uint32_t n = ADCGS_MIN(s->scene->points.n, most);
     double x[3];
     for (uint32_t i = 0; i < n; i++)
-        if (given_point(x, s, (uint32_t)((uint64_t)i * s->scene->points.n / n)) && adcgs_sight_observe(s, x).seen)
+        if (given_point(x, s, (uint32_t)((uint64_t)i * s->scene->points.n / n)) && adcgs_visibility_of(s, x).seen)
             return 1;
     return 0;
 }
 
 /** Adds the scene's points in scene units, evenly thinned. Points without a colour get the colour of the images. */
-static void given_points(adcgs_start_points *c, const adcgs_sight *s, uint32_t wanted)
+static void given_points(adcgs_start_points *c, const adcgs_visibility *s, uint32_t wanted)
 {
     const adcgs_scene_points *p = &s->scene->points;
     const uint32_t n = p->n < wanted ? p->n : wanted;
@@ -69,7 +69,7 @@ static void given_points(adcgs_start_points *c, const adcgs_sight *s, uint32_t w
         double x[3];
         if (!given_point(x, s, from))
             continue;
-        const adcgs_glimpse seen = p->coloured ? (adcgs_glimpse){0} : adcgs_sight_observe(s, x);
+        const adcgs_point_visibility seen = p->coloured ? (adcgs_point_visibility){0} : adcgs_visibility_of(s, x);
         for (int a = 0; a < 3; a++) {
             c->x[c->n][a] = x[a];
             c->rgb[c->n][a] = p->coloured ? p->colour[from][a] / 255.0 : seen.rgb[a];
@@ -106,14 +106,15 @@ static void random_place(double x[3], uint64_t seed, uint64_t i)
  * Adds random points that enough cameras see and, with alpha, that are opaque in enough of them. Space known from matching stays
  * empty.
  */
-static void random_points(adcgs_start_points *c, const adcgs_sight *s, const adcgs_stereo *stereo, uint32_t wanted, uint64_t seed)
+static void random_points(adcgs_start_points *c, const adcgs_visibility *s, const adcgs_stereo *stereo, uint32_t wanted,
+                          uint64_t seed)
 {
     for (uint64_t i = 0; c->n < wanted && i < 400ull * wanted; i++) {
         double x[3];
         random_place(x, seed, i);
         const int far = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] > NEAR_RADIUS * NEAR_RADIUS;
         const int need = (int)s->n / (far ? 10 : 4) > 1 ? (int)s->n / (far ? 10 : 4) : 1;
-        const adcgs_glimpse g = adcgs_sight_observe(s, x);
+        const adcgs_point_visibility g = adcgs_visibility_of(s, x);
         if (g.seen < need || g.covered * 2 < g.seen || adcgs_stereo_is_known(stereo, x))
             continue;
         for (int a = 0; a < 3; a++) {
@@ -222,7 +223,7 @@ static int has_points(const adcgs_scene *scene)
 /**
  * Uses the scene's points, with matched moving points; otherwise matched points, and random points where matching found nothing.
  */
-static adcgs_status find_points(adcgs_start_points *c, const adcgs_sight *s, const adcgs_train_config *config,
+static adcgs_status find_points(adcgs_start_points *c, const adcgs_visibility *s, const adcgs_train_config *config,
                                 const adcgs_stereo *found, adcgs_error *error)
 {
     const uint32_t all = config->start_anchors, moving = config->params.spans ? (uint32_t)(MOVING_SHARE * all) : 0;
@@ -248,13 +249,13 @@ static adcgs_status find_points(adcgs_start_points *c, const adcgs_sight *s, con
 adcgs_status adcgs_start_points_find(adcgs_start_points *c, const adcgs_scene *scene, const adcgs_train_config *config,
                                      const adcgs_stereo *found, adcgs_error *error)
 {
-    adcgs_sight s;
+    adcgs_visibility s;
     *c = (adcgs_start_points){.n = 0};
-    ADCGS_TRY(adcgs_sight_init(&s, scene, error));
+    ADCGS_TRY(adcgs_visibility_init(&s, scene, error));
     adcgs_status status = alloc_points(c, config->start_anchors, error);
     if (status == ADCGS_OK)
         status = find_points(c, &s, config, found, error);
-    adcgs_sight_clear(&s);
+    adcgs_visibility_clear(&s);
     return status;
 }
 

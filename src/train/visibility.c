@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Visibility of points in the training views. */
-#include "train/sight.h"
+#include "train/visibility.h"
 
 #include "camera/rotation.h"
 #include "train/scene_frame.h"
@@ -8,15 +8,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-void adcgs_sight_clear(adcgs_sight *s)
+void adcgs_visibility_clear(adcgs_visibility *s)
 {
     for (uint32_t i = 0; i < s->n; i++)
         free(s->rgb[i]);
 }
 
-adcgs_status adcgs_sight_init(adcgs_sight *s, const adcgs_scene *scene, adcgs_error *error)
+adcgs_status adcgs_visibility_init(adcgs_visibility *s, const adcgs_scene *scene, adcgs_error *error)
 {
-    const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN], n = ADCGS_MIN(all, ADCGS_SIGHTS);
+    const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN], n = ADCGS_MIN(all, ADCGS_VISIBILITY_VIEWS);
     memset(s, 0, sizeof *s);
     s->scene = scene;
     ADCGS_TRY(adcgs_scene_frame(scene, s->origin, &s->scale, error));
@@ -24,7 +24,7 @@ adcgs_status adcgs_sight_init(adcgs_sight *s, const adcgs_scene *scene, adcgs_er
         const adcgs_scene_view *view = &scene->views[ADCGS_SPLIT_TRAIN][(uint64_t)i * all / n];
         const adcgs_status status = adcgs_scene_load(scene, view, 4, &s->rgb[i], &s->camera[i], error);
         if (status != ADCGS_OK) {
-            adcgs_sight_clear(s);
+            adcgs_visibility_clear(s);
             return status;
         }
         s->n = i + 1;
@@ -32,9 +32,9 @@ adcgs_status adcgs_sight_init(adcgs_sight *s, const adcgs_scene *scene, adcgs_er
     return ADCGS_OK;
 }
 
-adcgs_glimpse adcgs_sight_observe(const adcgs_sight *s, const double x[3])
+adcgs_point_visibility adcgs_visibility_of(const adcgs_visibility *s, const double x[3])
 {
-    adcgs_glimpse g = {0, 0, {0, 0, 0}};
+    adcgs_point_visibility g = {0, 0, {0, 0, 0}};
     double world[3];
     for (int a = 0; a < 3; a++)
         world[a] = s->origin[a] + s->scale * x[a];
