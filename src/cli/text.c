@@ -41,8 +41,7 @@ char *adcgs_text_utf8(const char *text)
     return whole;
 }
 
-/** True if programs show a character instead of interpreting it. */
-static int is_shown(uint32_t code)
+int adcgs_text_is_shown(uint32_t code)
 {
     static const uint32_t hidden[][2] = {
         {0, 0x1f},        {0x7f, 0x9f},                                           /* C0, DEL and C1 */
@@ -64,7 +63,7 @@ static int show(FILE *file, const char *text, char quote)
     while (*text) {
         uint32_t code;
         const int n = adcgs_utf8_next(text, &code);
-        if (n && is_shown(code)) {
+        if (n && adcgs_text_is_shown(code)) {
             columns += 1 + (quote && *text == quote);
             if (quote && *text == quote)
                 fputc(quote, file);

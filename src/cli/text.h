@@ -19,6 +19,9 @@
 /** Length of the UTF-8 character at text, and its code point; 0 at the end and at an invalid byte. */
 int adcgs_utf8_next(const char *text, uint32_t *code);
 
+/** True if programs show a character instead of interpreting it. */
+int adcgs_text_is_shown(uint32_t code);
+
 /** The text as UTF-8, to be freed by free(); U+FFFD replaces each invalid byte. NULL on allocation failure. */
 char *adcgs_text_utf8(const char *text);
 
