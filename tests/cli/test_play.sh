@@ -203,11 +203,16 @@ END
     differ ground.png flown.png
 
     # Expectations that fail, and invalid scripts.
-    printf 'wait 1 frames\n\nexpect time 0.5\nquit\n' | play 1 "^adcgs-dec: script: line 3: time is 0.1, expected 0.5$" --time 0.1
-    printf 'expect weather 1\nquit\n' | play 2 "^adcgs-dec: script: line 1: "
-    printf 'quit\njump\n' | play 2 "^adcgs-dec: script: line 2 is no command"
-    printf 'screenshot no/such.png\nquit\n' | play 3 "^adcgs-dec: script: line 1: .*no/such.png"
-    printf 'screenshot x.foo\nquit\n' | play 5 "^adcgs-dec: script: line 1: .*x.foo"
+    printf 'wait 1 frames\n\nexpect time 0.5\nquit\n' >"$dir/lines"
+    play 1 "^adcgs-dec: script: line 3: time is 0.1, expected 0.5$" --time 0.1 <"$dir/lines"
+    printf 'expect weather 1\nquit\n' >"$dir/lines"
+    play 2 "^adcgs-dec: script: line 1: " <"$dir/lines"
+    printf 'quit\njump\n' >"$dir/lines"
+    play 2 "^adcgs-dec: script: line 2 is no command" <"$dir/lines"
+    printf 'screenshot no/such.png\nquit\n' >"$dir/lines"
+    play 3 "^adcgs-dec: script: line 1: .*no/such.png" <"$dir/lines"
+    printf 'screenshot x.foo\nquit\n' >"$dir/lines"
+    play 5 "^adcgs-dec: script: line 1: .*x.foo" <"$dir/lines"
 }
 
 # frames Y4M BYTES: the MD5 of each frame (of BYTES bytes), without those that equal the previous one.
@@ -249,7 +254,8 @@ END
     cmp "$dir/key1.png" "$dir/second.png" || bad "the path's last frame, on $where"
     [ ! -e "$dir/key2.png" ] || bad "keys a frame apart have frames between them"
     # All keys removed: no file.
-    printf 'key k\nkey shift-k\nexpect keys 0\nquit\n' | play 0 "" --time 0
+    printf 'key k\nkey shift-k\nexpect keys 0\nquit\n' >"$dir/lines"
+    play 0 "" --time 0 <"$dir/lines"
     [ ! -e "$dir/s-000002.json" ] || bad "a file of a path without keys"
 
     # A video has each frame at least once, at full resolution, however long rendering takes. It ends with the key, or with the
@@ -279,8 +285,10 @@ END
     [ "$(frames "$dir/still.y4m" $bytes | wc -l)" -eq 1 ] || bad "the still video, on $where"
     set -- "$dir"/s-000001.[my]*
     [ -s "$1" ] || bad "the key's video, on $where"
-    printf 'record no/such.y4m\nquit\n' | play 3 "^adcgs-dec: script: line 1: .*no/such.y4m"
-    printf 'record x.png\nquit\n' | play 2 "^adcgs-dec: script: line 1: x.png"
+    printf 'record no/such.y4m\nquit\n' >"$dir/lines"
+    play 3 "^adcgs-dec: script: line 1: .*no/such.y4m" <"$dir/lines"
+    printf 'record x.png\nquit\n' >"$dir/lines"
+    play 2 "^adcgs-dec: script: line 1: x.png" <"$dir/lines"
 
     # Full screen, and back.
     play 0 "" --size 128x96 --time 0 <<'END'
