@@ -25,7 +25,8 @@ typedef enum adcgs_event_kind {
     ADCGS_EVENT_MOTION, /**< x, y, and the movement dx, dy */
     ADCGS_EVENT_WHEEL,  /**< dy: steps away from the user */
     ADCGS_EVENT_SIZE,   /**< the window has another size, or must be rendered again */
-    ADCGS_EVENT_LOST    /**< keyboard input goes elsewhere from now on */
+    ADCGS_EVENT_LOST,   /**< keyboard input goes elsewhere from now on */
+    ADCGS_EVENT_LEAVE   /**< the pointer has left the window */
 } adcgs_event_kind;
 
 typedef struct adcgs_event {

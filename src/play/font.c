@@ -7,6 +7,7 @@
 #include "base/base.h"
 
 #define FIRST 0x20
+#define SIZE 9 /* of text, for which a pixel of a letter is a pixel: its nine rows then fit into a line */
 
 /* One row per number, from the top; 0x10 is its leftmost pixel. */
 static const uint8_t glyphs[][ADCGS_GLYPH_HEIGHT] = {
@@ -112,3 +113,23 @@ const uint8_t *adcgs_glyph(char letter)
     const unsigned index = (unsigned char)letter - (unsigned)FIRST;
     return glyphs[index < ADCGS_COUNTOF(glyphs) ? index : (unsigned)('?' - FIRST)];
 }
+
+int adcgs_glyph_scale(int size)
+{
+    return ADCGS_MAX(1, size / SIZE);
+}
+
+int adcgs_glyph_width(int size, const char *text)
+{
+    int letters = 0;
+    for (; *text; text++)
+        letters += ((unsigned char)*text & 0xc0) != 0x80; /* UTF-8 continues a character */
+    return letters ? adcgs_glyph_scale(size) * (ADCGS_CELL_WIDTH * letters - (ADCGS_CELL_WIDTH - ADCGS_GLYPH_WIDTH)) : 0;
+}
+
+static int width_of(void *unused, int size, const char *text)
+{
+    return adcgs_glyph_width(size, text);
+}
+
+const adcgs_type adcgs_glyph_type = {.width = width_of};

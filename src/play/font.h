@@ -1,17 +1,22 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A built-in font, and the space that its letters take. */
+/** \file A built-in font, for windows without a font library or a font, and the space that its letters take. */
 #ifndef ADCGS_PLAY_FONT_H
 #define ADCGS_PLAY_FONT_H
 
-#include <stdint.h>
+#include "play/drawing.h"
 
 #define ADCGS_GLYPH_WIDTH 5
 #define ADCGS_GLYPH_HEIGHT 9 /**< two rows lie below the line */
-/* Size of a letter with the space around it. */
-#define ADCGS_CELL_WIDTH 6
-#define ADCGS_CELL_HEIGHT 11
+#define ADCGS_CELL_WIDTH 6   /**< with the space between letters */
 
 /** Rows of a letter, from the top; 0x10 is the leftmost pixel. A character that ASCII cannot print gives a question mark. */
 const uint8_t *adcgs_glyph(char letter);
+/** Pixels of the window per pixel of a letter, for text of this size. */
+int adcgs_glyph_scale(int size);
+/** Width of a line of UTF-8. */
+int adcgs_glyph_width(int size, const char *text);
+
+/** The same width, for drawings. */
+extern const adcgs_type adcgs_glyph_type;
 
 #endif

@@ -1,110 +1,133 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Renders the overlay on the image. */
+/** \file Arranges the overlay on the image. */
 #include "config.h"
 
 #include "play/overlay.h"
 
 #include "cli/text.h"
-#include "play/actions.h"
-#include "play/panel.h"
+#include "play/control_bar.h"
+#include "play/controls.h"
+#include "play/help_page.h"
+#include "play/overlay_colours.h"
 
 #include <stdio.h>
 
-#define BACKGROUND 0x000000a8u
-#define PAGE 0x000000e0u /* behind the help, which covers other text */
-#define TEXT 0xffffffffu
-#define GROOVE 0xffffff50u
-#define DONE 0x58b0ffffu
-#define MARGIN 4 /* letters' pixels around text */
+#define MESSAGE_LINES 6
+#define HINT "h for help"
 
-enum { BAR, STATISTICS, MESSAGE, HELP };
-
-/** Makes a panel of the size of its text. x and y are the parts of the free space to its left and above it. */
-static void text_panel(adcgs_panel *panel, const adcgs_play_state *state, const char *text, double x, double y,
-                       uint32_t background)
+/** The longest beginning of a text that fits, cut after a space if there is one. \return its bytes */
+static size_t fitting_bytes(const adcgs_type *type, const char *text, int size, int width)
 {
-    const int size = adcgs_play_text_size(state);
-    int columns, lines;
-    adcgs_text_size(text, &columns, &lines);
-    const int width = size * (columns * ADCGS_CELL_WIDTH + 2 * MARGIN - 1);
-    const int height = size * (lines * ADCGS_CELL_HEIGHT + 2 * MARGIN - (ADCGS_CELL_HEIGHT - ADCGS_GLYPH_HEIGHT + 2));
-    adcgs_panel_init(panel, width, height, background);
-    adcgs_panel_text(panel, size * MARGIN, size * MARGIN, size, text, TEXT);
-    panel->x = ADCGS_MAX(0, (int)(x * (state->width - width)));
-    panel->y = ADCGS_MAX(0, (int)(y * (state->height - height)));
+    char line[ADCGS_TEXT_BYTES];
+    size_t fits = 0, words = 0;
+    for (size_t at = 0; text[at] && at + 5 < sizeof line;) {
+        uint32_t code;
+        const int length = adcgs_utf8_next(text + at, &code);
+        at += (size_t)ADCGS_MAX(1, length);
+        memcpy(line, text, at);
+        line[at] = 0;
+        if (adcgs_text_width(type, size, line) > width)
+            return words ? words : ADCGS_MAX(fits, (size_t)1);
+        fits = at;
+        if (text[at] == ' ' || !text[at])
+            words = at;
+    }
+    return ADCGS_MAX(fits, (size_t)1);
 }
 
-/** Renders the groove with the elapsed part, and the time on its right if there is room. */
-static void draw_bar(adcgs_panel *panel, const adcgs_play_state *state)
+/** Splits a text into lines that fit. The last line has the rest. \return the number of lines */
+static int wrap(const adcgs_type *type, const char *text, int size, int width, char lines[MESSAGE_LINES][ADCGS_TEXT_BYTES])
 {
-    const adcgs_rect place = adcgs_play_bar(state);
-    const adcgs_play_clock *const clock = &state->clock;
-    const int size = adcgs_play_text_size(state), third = place.height / 3;
-    char text[64];
-    adcgs_panel_init(panel, place.width ? state->width : 0, place.height, BACKGROUND);
-    panel->x = place.x;
-    panel->y = place.y;
-    if (!panel->width)
+    int n = 0;
+    while (*text && n < MESSAGE_LINES) {
+        const size_t bytes = n + 1 < MESSAGE_LINES ? fitting_bytes(type, text, size, width) : strlen(text);
+        snprintf(lines[n++], ADCGS_TEXT_BYTES, "%.*s", (int)ADCGS_MIN(bytes, (size_t)ADCGS_TEXT_BYTES - 1), text);
+        text += bytes;
+        text += *text == ' ';
+    }
+    return n;
+}
+
+/** Writes lines on a background. x and y are the parts of the free space to the left and above; bottom is left free. */
+static void draw_lines(adcgs_drawing *d, const adcgs_play_state *state, char lines[][ADCGS_TEXT_BYTES], int n, double x, double y,
+                       int bottom)
+{
+    const int pad = adcgs_text_size(state) / 2, room = state->width - 2 * pad;
+    int size = adcgs_text_size(state), width;
+    for (;; size--) { /* smaller, until the lines fit */
+        width = 0;
+        for (int i = 0; i < n; i++)
+            width = ADCGS_MAX(width, adcgs_text_width(d->type, size, lines[i]));
+        if (size <= ADCGS_LETTERS_MIN || (width <= room && n * adcgs_line_height(size) + 2 * pad <= state->height - bottom))
+            break;
+    }
+    width = ADCGS_MIN(width, room);
+    const int line = adcgs_line_height(size), fit = (state->height - bottom - 2 * pad) / line;
+    n = ADCGS_MIN(n, fit);
+    if (n < 1)
         return;
-    const double part = (double)adcgs_play_clock_frame(clock) / (clock->frames - 1);
-    const int passed = (int)(part * (place.width - 1));
-    adcgs_panel_fill(panel, 0, third, place.width, third, GROOVE);
-    adcgs_panel_fill(panel, 0, third, passed, third, DONE);
-    adcgs_panel_fill(panel, passed - size, 0, 2 * size, place.height, TEXT);
-    snprintf(text, sizeof text, "%-2s %.2f s", clock->playing ? ">" : "||", adcgs_play_clock_time(clock));
-    const int top = (place.height - (ADCGS_GLYPH_HEIGHT - 2) * size) / 2;
-    if (place.width < state->width)
-        adcgs_panel_text(panel, place.width + ADCGS_CELL_WIDTH * size, top, size, text, TEXT);
+    const adcgs_rect place = {(int)(x * (state->width - width - 2 * pad)),
+                              (int)(y * (state->height - bottom - n * line - 2 * pad)), width + 2 * pad, n * line + 2 * pad};
+    adcgs_drawing_rect(d, place, ADCGS_COLOUR_BACK);
+    for (int i = 0; i < n; i++)
+        adcgs_drawing_text(d, place.x + pad, place.y + pad + i * line, size, width, lines[i], ADCGS_COLOUR_TEXT);
 }
 
-static void draw_statistics(adcgs_panel *panel, const adcgs_play_state *state, const adcgs_play_figures *figures)
+static void draw_text(adcgs_drawing *d, const adcgs_play_state *state, const char *text, double x, double y, int bottom)
+{
+    char lines[MESSAGE_LINES][ADCGS_TEXT_BYTES];
+    const int size = adcgs_text_size(state), n = wrap(d->type, text, size, state->width - 2 * (size / 2), lines);
+    draw_lines(d, state, lines, n, x, y, bottom);
+}
+
+static void draw_statistics(adcgs_drawing *d, const adcgs_play_state *state, const adcgs_play_figures *f)
 {
     const adcgs_play_clock *const clock = &state->clock;
-    char rate[40] = "", text[440];
-    if (figures->rate > 0.0)
-        snprintf(rate, sizeof rate, ", %.1f fps", figures->rate);
-    snprintf(text, sizeof text,
-             "image   %.1f ms%s\n"
-             "size    %dx%d of %dx%d\n"
-             "splats  %u\n"
-             "layers  %d of %d\n"
-             "tiers   %d\n"
-             "time    %.3f s, frame %d of %d\n"
-             "speed   %gx%s%s\n"
-             "dropped %ld",
-             1e3 * figures->seconds, rate, figures->width, figures->height, state->width, state->height,
-             (unsigned)figures->splats, state->layers, state->layers_max, figures->tiers, adcgs_play_clock_time(clock),
-             adcgs_play_clock_frame(clock), clock->frames, adcgs_play_clock_factor(clock), clock->loop ? ", loop" : "",
-             state->flying ? ", flying" : "", figures->dropped);
-    text_panel(panel, state, text, 0.0, 0.0, BACKGROUND);
+    char lines[8][ADCGS_TEXT_BYTES], rate[40] = "";
+    if (f->rate > 0.0)
+        snprintf(rate, sizeof rate, ", %.1f fps", f->rate);
+    snprintf(lines[0], sizeof lines[0], "image: %.1f ms%s", 1e3 * f->seconds, rate);
+    snprintf(lines[1], sizeof lines[1], "size: %dx%d of %dx%d", f->width, f->height, state->width, state->height);
+    snprintf(lines[2], sizeof lines[2], "splats: %u", (unsigned)f->splats);
+    snprintf(lines[3], sizeof lines[3], "layers: %d of %d", state->layers, state->layers_max);
+    snprintf(lines[4], sizeof lines[4], "tiers: %d", f->tiers);
+    snprintf(lines[5], sizeof lines[5], "time: %.3f s, frame %d of %d", adcgs_play_clock_time(clock),
+             adcgs_play_clock_frame(clock), clock->frames);
+    snprintf(lines[6], sizeof lines[6], "speed: %gx%s%s", adcgs_play_clock_factor(clock), clock->loop ? ", loop" : "",
+             state->flying ? ", flying" : "");
+    snprintf(lines[7], sizeof lines[7], "dropped: %ld", f->dropped);
+    draw_lines(d, state, lines, 8, 0.0, 0.0, 0);
 }
 
-static void draw_help(adcgs_panel *panel, const adcgs_play_state *state)
+static void draw_message(adcgs_drawing *d, const adcgs_play_state *state, const adcgs_play_figures *figures, int bottom)
 {
-    char text[2000];
-    size_t used = 0;
-    int n;
-    const adcgs_play_help *const lines = adcgs_play_help_lines(&n);
-    for (int i = 0; i < n && used < sizeof text; i++)
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s%-11s %s", i ? "\n" : "", lines[i].keys, lines[i].text);
-    text_panel(panel, state, text, 0.5, 0.5, PAGE);
-}
-
-void adcgs_overlay_draw(adcgs_panel panels[ADCGS_PANELS], const adcgs_play_state *state, const adcgs_play_figures *figures)
-{
-    for (int i = 0; i < ADCGS_PANELS; i++)
-        panels[i].width = panels[i].height = 0;
-    draw_bar(&panels[BAR], state);
-    if (state->statistics)
-        draw_statistics(&panels[STATISTICS], state, figures);
     const int has_message = *state->message && state->now < state->message_end;
     char recording[40];
     snprintf(recording, sizeof recording, "recording, %ld frame%s", state->recorded, adcgs_s((uint64_t)state->recorded));
-    if (has_message || state->record || (*figures->coming && state->bar)) {
-        const char *const text = has_message ? state->message : state->record ? recording : figures->coming;
-        text_panel(&panels[MESSAGE], state, text, 0.0, 1.0, BACKGROUND);
-        panels[MESSAGE].y = ADCGS_MAX(0, panels[MESSAGE].y - adcgs_play_bar(state).height);
+    const char *const text = has_message ? state->message : state->record ? recording : state->bar ? figures->coming : "";
+    if (*text)
+        draw_text(d, state, text, 0.0, 1.0, bottom);
+}
+
+int adcgs_overlay_hints(const adcgs_play_state *state)
+{
+    return state->now < state->hint_end && !state->help;
+}
+
+void adcgs_overlay_draw(adcgs_drawing *d, const adcgs_type *type, const adcgs_play_state *state,
+                        const adcgs_play_figures *figures)
+{
+    adcgs_controls controls;
+    adcgs_controls_place(&controls, state);
+    adcgs_drawing_init(d, type);
+    if (state->help) { /* alone: in a small window it covers the rest */
+        adcgs_help_page_draw(d, state);
+        return;
     }
-    if (state->help)
-        draw_help(&panels[HELP], state);
+    if (state->statistics)
+        draw_statistics(d, state, figures);
+    draw_message(d, state, figures, controls.back.height);
+    adcgs_control_bar_draw(d, &controls, state);
+    if (adcgs_overlay_hints(state))
+        draw_text(d, state, HINT, 1.0, 0.0, controls.back.height);
 }

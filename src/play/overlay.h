@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The overlay on the image: time bar, statistics, help, message. */
+/** \file The overlay on the image: controls, statistics, help, hint, message. */
 #ifndef ADCGS_PLAY_OVERLAY_H
 #define ADCGS_PLAY_OVERLAY_H
 
+#include "play/drawing.h"
 #include "play/play_state.h"
-#include "play/window.h"
 
 /** Figures that are not in the state. */
 typedef struct adcgs_play_figures {
@@ -17,7 +17,10 @@ typedef struct adcgs_play_figures {
     char coming[160];  /**< received part of the stream; "": all of it has arrived */
 } adcgs_play_figures;
 
-/** Renders the panels, from the lowest to the uppermost; hidden ones have width 0. Free them with adcgs_panel_free(). */
-void adcgs_overlay_draw(adcgs_panel panels[ADCGS_PANELS], const adcgs_play_state *state, const adcgs_play_figures *figures);
+/** True while the hint of the help is shown: from the start, until a key or some seconds later. */
+int adcgs_overlay_hints(const adcgs_play_state *state);
+/** Fills the drawing; everything is inside the window. */
+void adcgs_overlay_draw(adcgs_drawing *drawing, const adcgs_type *type, const adcgs_play_state *state,
+                        const adcgs_play_figures *figures);
 
 #endif

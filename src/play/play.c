@@ -3,9 +3,9 @@
 #include "config.h"
 
 #include "play/actions.h"
+#include "cli/cli.h"
 #include "cli/text.h"
 #include "play/files.h"
-#include "play/panel.h"
 #include "play/player.h"
 #include "play/script_run.h"
 
@@ -134,6 +134,8 @@ static adcgs_status open_window(adcgs_player *p, adcgs_error *error)
     ADCGS_TRY(adcgs_sdl_get(&p->sdl, s->source.path, error));
     ADCGS_TRY(p->sdl->open(&p->window, s->source.path, size[0], size[1], error));
     measure_window(p);
+    if (*p->sdl->plain(p->window))
+        adcgs_cli_note(s->cli, "%s: the player uses plain letters", p->sdl->plain(p->window));
     ADCGS_TRY(adcgs_worker_create(&p->worker, &s->source, &s->config, wake, p, error));
     return s->source.feed ? adcgs_feed_start(s->source.feed, wake, p, error) : ADCGS_OK;
 }
@@ -181,8 +183,6 @@ adcgs_status adcgs_play_run(const adcgs_play_settings *s, int *failed, adcgs_err
     }
     if (p->window)
         p->sdl->close(&p->window);
-    for (int i = 0; i < ADCGS_PANELS; i++)
-        adcgs_panel_free(&p->panels[i]);
     adcgs_key_frames_clear(&p->keys);
     adcgs_script_clear(&p->run.script);
     *failed = status == ADCGS_OK && p->run.failed;

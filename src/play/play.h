@@ -3,9 +3,11 @@
 #ifndef ADCGS_PLAY_PLAY_H
 #define ADCGS_PLAY_PLAY_H
 
+#include "cli/cli.h"
 #include "play/worker.h"
 
 typedef struct adcgs_play_settings {
+    const adcgs_cli *cli;        /**< for remarks */
     adcgs_play_source source;    /**< the stream; its path also serves messages, the title, and names of screenshots */
     adcgs_config config;         /**< layers: initial number, 0: all */
     adcgs_info info;             /**< of the stream with all its layers; of an arriving stream, according to its header */

@@ -5,7 +5,7 @@
 #include "play/play_state.h"
 
 #include "play/actions.h"
-#include "play/font.h"
+#include "play/controls.h"
 
 #include <math.h>
 
@@ -15,8 +15,7 @@
 #define SPEED_MAX 100.0
 #define SHIFT_SPEED 4.0 /* factor of the speed with shift */
 #define STILL_AFTER 0.2 /* seconds without a movement after which the image counts as still */
-#define LARGE_WIDTH 512 /* size from which on letters are twice as large */
-#define LARGE_HEIGHT 480
+#define HINT_SECONDS 8.0
 
 void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *stored)
 {
@@ -33,6 +32,7 @@ void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcg
         .speed = 1.0,
         .bar = 1,
         .moved = -STILL_AFTER,
+        .pointer = {-1.0, -1.0},
     };
     adcgs_orbit_control_init(&state->control, info, home);
     adcgs_play_clock_init(&state->clock, info->time_start, info->time_end, info->frame_rate, 0.0);
@@ -50,20 +50,11 @@ int adcgs_play_moving(const adcgs_play_state *state)
     return (state->clock.playing && !adcgs_play_clock_waits(&state->clock)) || state->now - state->moved < STILL_AFTER;
 }
 
-int adcgs_play_text_size(const adcgs_play_state *state)
+adcgs_play_control adcgs_play_pointed(const adcgs_play_state *state)
 {
-    const int density = ADCGS_MAX(1, (int)(state->density + 0.5));
-    const int large = state->width >= LARGE_WIDTH * density && state->height >= LARGE_HEIGHT * density;
-    return density * (1 + large);
-}
-
-adcgs_rect adcgs_play_bar(const adcgs_play_state *state)
-{
-    const int size = adcgs_play_text_size(state);
-    const int height = ADCGS_PLAY_BAR_HEIGHT * size, text = ADCGS_PLAY_BAR_COLUMNS * ADCGS_CELL_WIDTH * size;
-    const int shown = state->bar && state->clock.frames > 1 && height < state->height;
-    const int width = state->width - (state->width > 3 * text ? text : 0);
-    return shown ? (adcgs_rect){0, state->height - height, width, height} : (adcgs_rect){0};
+    adcgs_controls controls;
+    adcgs_controls_place(&controls, state);
+    return state->flying ? ADCGS_CONTROL_NONE : adcgs_controls_at(&controls, state->pointer[0], state->pointer[1]);
 }
 
 /* ---- Keys. ---- */
@@ -98,6 +89,8 @@ static void on_key(adcgs_play_state *state, const adcgs_event *event)
 {
     if (event->key == ADCGS_KEY_SHIFT)
         state->shift = event->down;
+    if (event->down)
+        state->hint_end = state->now;
     if (hold(state, event) || !event->down)
         return;
     adcgs_play_act(state, event->key, event->again);
@@ -105,23 +98,56 @@ static void on_key(adcgs_play_state *state, const adcgs_event *event)
 
 /* ---- The mouse. ---- */
 
-static void scrub(adcgs_play_state *state, double x)
+static void point(adcgs_play_state *state, const adcgs_event *event)
 {
-    const adcgs_rect bar = adcgs_play_bar(state);
-    state->moved = state->now;
-    adcgs_play_clock_seek(&state->clock, (x - bar.x) / ADCGS_MAX(1, bar.width - 1));
+    state->pointer[0] = event->x;
+    state->pointer[1] = event->y;
+    state->pointed = state->now;
 }
 
+static void scrub(adcgs_play_state *state, double x)
+{
+    adcgs_controls controls;
+    adcgs_controls_place(&controls, state);
+    state->moved = state->now;
+    adcgs_play_clock_seek(&state->clock, adcgs_controls_part(&controls, x));
+}
+
+/** Presses a control. It acts if the button is released on it. */
+static void press(adcgs_play_state *state, adcgs_play_control control, double x)
+{
+    state->pressed = control;
+    if (control == ADCGS_CONTROL_SLIDER) {
+        state->drag = ADCGS_DRAG_BAR;
+        scrub(state, x);
+    }
+}
+
+static void release(adcgs_play_state *state)
+{
+    const adcgs_play_control control = state->pressed;
+    state->pressed = ADCGS_CONTROL_NONE;
+    if (control != ADCGS_CONTROL_NONE && control == adcgs_play_pointed(state))
+        adcgs_play_act(state, adcgs_controls_key(control), 0);
+}
+
+/** Controls that rest are not pressed: the user does not see them. */
 static void on_button(adcgs_play_state *state, const adcgs_event *event)
 {
-    const adcgs_rect bar = adcgs_play_bar(state);
     state->drag = ADCGS_DRAG_NONE;
-    if (!event->down || state->flying)
+    if (state->flying)
         return;
-    if (event->button == 1 && bar.width && event->y >= bar.y) {
-        state->drag = ADCGS_DRAG_BAR;
-        scrub(state, event->x);
-    } else if (event->button == 1 && !state->shift)
+    state->pointer[0] = event->x;
+    state->pointer[1] = event->y;
+    const adcgs_play_control control = adcgs_play_pointed(state);
+    state->pointed = state->now;
+    if (!event->down)
+        release(state);
+    else if (state->help)
+        state->help = 0; /* a press closes it, and has no other effect */
+    else if (event->button == 1 && control != ADCGS_CONTROL_NONE)
+        press(state, control, event->x);
+    else if (event->button == 1 && !state->shift)
         state->drag = ADCGS_DRAG_ORBIT;
     else
         state->drag = ADCGS_DRAG_PAN;
@@ -131,6 +157,8 @@ static void on_motion(adcgs_play_state *state, const adcgs_event *event)
 {
     const double turn = -RADIANS_PER_HEIGHT / state->height;
     adcgs_camera view;
+    if (!state->flying)
+        point(state, event);
     if (state->drag == ADCGS_DRAG_BAR)
         scrub(state, event->x);
     if (state->drag == ADCGS_DRAG_BAR || (!state->flying && state->drag == ADCGS_DRAG_NONE))
@@ -179,6 +207,10 @@ void adcgs_play_event(adcgs_play_state *state, const adcgs_event *event)
         state->held = 0;
         state->shift = 0;
         state->drag = ADCGS_DRAG_NONE;
+        state->pressed = ADCGS_CONTROL_NONE;
+        break;
+    case ADCGS_EVENT_LEAVE:
+        state->pointer[0] = state->pointer[1] = -1.0;
         break;
     case ADCGS_EVENT_SIZE:
     case ADCGS_EVENT_NONE:
@@ -191,6 +223,11 @@ void adcgs_play_tick(adcgs_play_state *state, double now)
     const double way = (now - state->now) * state->speed * (state->shift ? SHIFT_SPEED : 1.0);
     double by[3] = {0.0, 0.0, 0.0};
     state->now = now;
+    if (!state->ticks) {
+        state->ticks = 1;
+        state->pointed = now;
+        state->hint_end = now + HINT_SECONDS;
+    }
     adcgs_play_clock_tick(&state->clock, now);
     for (size_t i = 0; i < ADCGS_COUNTOF(flights); i++)
         if (state->held >> i & 1) {

@@ -11,17 +11,24 @@
 #include "play/event.h"
 #include "play/play_clock.h"
 
-/* The time bar: its height in pixels of letters, and the room for the time on its right in letters. */
-#define ADCGS_PLAY_BAR_HEIGHT 14
-#define ADCGS_PLAY_BAR_COLUMNS 13
-
 typedef enum adcgs_play_drag { ADCGS_DRAG_NONE, ADCGS_DRAG_ORBIT, ADCGS_DRAG_PAN, ADCGS_DRAG_BAR } adcgs_play_drag;
 
 typedef enum adcgs_play_shot { ADCGS_SOURCE_IMAGE_NONE, ADCGS_SOURCE_IMAGE_PNG, ADCGS_SOURCE_IMAGE_EXR } adcgs_play_shot;
 
-typedef struct adcgs_rect {
-    int x, y, width, height;
-} adcgs_rect;
+/** Parts of the window that a mouse can press; scripts name them by number. */
+typedef enum adcgs_play_control {
+    ADCGS_CONTROL_NONE,
+    ADCGS_CONTROL_SLIDER, /**< of time */
+    ADCGS_CONTROL_PLAY,
+    ADCGS_CONTROL_PREVIOUS, /**< stored camera */
+    ADCGS_CONTROL_NEXT,
+    ADCGS_CONTROL_HELP,
+    ADCGS_CONTROL_FULL,
+    ADCGS_CONTROL_TIME, /**< a text; a press has no effect */
+    ADCGS_CONTROL_NAME, /**< of the camera; a text */
+    ADCGS_CONTROL_BACK, /**< between the controls */
+    ADCGS_CONTROL_COUNT
+} adcgs_play_control;
 
 typedef struct adcgs_play_state {
     adcgs_orbit_control control;
@@ -41,7 +48,12 @@ typedef struct adcgs_play_state {
     adcgs_play_drag drag;
     double moved; /**< when the user last moved the camera or the time */
 
-    int bar, statistics, help; /**< visible overlays */
+    double pointer[2]; /**< position of the pointer; negative: it is outside the window */
+    double pointed;    /**< when it last moved or pressed */
+    adcgs_play_control pressed;
+
+    int bar, statistics, help; /**< visible overlays; bar: the controls, which rest while it plays */
+    double hint_end;           /**< when the hint of the help disappears */
     char message[200];
     double message_end; /**< when the message disappears */
 
@@ -51,6 +63,7 @@ typedef struct adcgs_play_state {
     long recorded;        /**< its frames so far */
     int full;             /**< full screen is requested */
     int quit;
+    int ticks;  /**< the wall clock is known */
     double now; /**< wall clock at the last tick */
 } adcgs_play_state;
 
@@ -64,9 +77,7 @@ void adcgs_play_tick(adcgs_play_state *state, double now);
 
 /** True if the image moves: playing, flying, or moved by the user just now. */
 int adcgs_play_moving(const adcgs_play_state *state);
-/** The rectangle of the time bar in the window, without the time on its right; width 0 if it is hidden. */
-adcgs_rect adcgs_play_bar(const adcgs_play_state *state);
-/** Pixels of the window per pixel of a letter. */
-int adcgs_play_text_size(const adcgs_play_state *state);
+/** The control under the pointer. */
+adcgs_play_control adcgs_play_pointed(const adcgs_play_state *state);
 
 #endif

@@ -259,6 +259,6 @@ adcgs_status adcgs_player_show(adcgs_player *p, uint8_t *rgb, adcgs_error *error
     p->stale = 0;
     p->shown = adcgs_seconds();
     p->figures.rate = p->period > 0.0 && p->shown - p->arrived < REST_SECONDS ? 1.0 / p->period : 0.0;
-    adcgs_overlay_draw(p->panels, &p->state, &p->figures);
-    return p->sdl->show(p->window, p->panels, rgb, error);
+    adcgs_overlay_draw(&p->overlay, p->sdl->type(p->window), &p->state, &p->figures);
+    return p->sdl->show(p->window, &p->overlay, rgb, error);
 }

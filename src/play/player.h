@@ -9,6 +9,7 @@
 #include "play/recording.h"
 #include "play/scale.h"
 #include "play/script.h"
+#include "play/window.h"
 #include "play/worker.h"
 
 /** The position in a script. */
@@ -29,7 +30,7 @@ typedef struct adcgs_player {
     adcgs_play_state state;
     adcgs_play_figures figures;
     adcgs_play_scale scale;
-    adcgs_panel panels[ADCGS_PANELS];
+    adcgs_drawing overlay;
     adcgs_script_run run;
     adcgs_play_job job;    /**< the last one for the window; camera width 0 before the first */
     int least_divider;     /**< larger images cannot be rendered */

@@ -5,7 +5,7 @@
 #include "play/script.h"
 
 #include "io/file.h"
-#include "play/window.h"
+#include "play/play_state.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -98,6 +98,34 @@ static int read_drag(adcgs_script_line *to, char **rest)
     return to->key ? read_numbers(rest, to->number, 4) : -1;
 }
 
+/** The name of a control. */
+static int read_control(adcgs_script_line *to, char **rest)
+{
+    static const struct {
+        const char *name;
+        adcgs_play_control control;
+    } names[] = {
+        {"slider", ADCGS_CONTROL_SLIDER}, {"play", ADCGS_CONTROL_PLAY}, {"previous", ADCGS_CONTROL_PREVIOUS},
+        {"next", ADCGS_CONTROL_NEXT},     {"help", ADCGS_CONTROL_HELP}, {"full", ADCGS_CONTROL_FULL},
+    };
+    const char *const name = strtok_r(NULL, BLANKS, rest);
+    for (size_t i = 0; i < ADCGS_COUNTOF(names) && name; i++)
+        if (!strcmp(names[i].name, name))
+            to->key = (int)names[i].control;
+    return to->key ? 0 : -1;
+}
+
+/** Two fractions. */
+static int read_slide(adcgs_script_line *to, char **rest)
+{
+    if (read_numbers(rest, to->number, 2))
+        return -1;
+    for (int i = 0; i < 2; i++)
+        if (to->number[i] < 0.0 || to->number[i] > 1.0)
+            return -1;
+    return 0;
+}
+
 /** WIDTHxHEIGHT */
 static int read_size(const char *text, double number[2])
 {
@@ -140,6 +168,11 @@ static int read_arguments(adcgs_script_line *to, char **rest)
         return read_wait(to, rest);
     case ADCGS_SCRIPT_DRAG:
         return read_drag(to, rest);
+    case ADCGS_SCRIPT_POINT:
+    case ADCGS_SCRIPT_CLICK:
+        return read_control(to, rest);
+    case ADCGS_SCRIPT_SLIDE:
+        return read_slide(to, rest);
     case ADCGS_SCRIPT_MOVE:
         return read_numbers(rest, to->number, 2);
     case ADCGS_SCRIPT_WHEEL:
@@ -173,7 +206,8 @@ static int read_command(adcgs_script_line *to, char *line)
         {"wheel", ADCGS_SCRIPT_WHEEL},      {"key", ADCGS_SCRIPT_KEY},       {"hold", ADCGS_SCRIPT_HOLD},
         {"release", ADCGS_SCRIPT_RELEASE},  {"size", ADCGS_SCRIPT_SIZE},     {"screenshot", ADCGS_SCRIPT_SCREENSHOT},
         {"grab", ADCGS_SCRIPT_GRAB},        {"record", ADCGS_SCRIPT_RECORD}, {"expect", ADCGS_SCRIPT_EXPECT},
-        {"quit", ADCGS_SCRIPT_QUIT},
+        {"quit", ADCGS_SCRIPT_QUIT},        {"point", ADCGS_SCRIPT_POINT},   {"click", ADCGS_SCRIPT_CLICK},
+        {"slide", ADCGS_SCRIPT_SLIDE},
     };
     char *rest = NULL;
     const char *const name = strtok_r(line, BLANKS, &rest);

@@ -14,6 +14,9 @@ typedef enum adcgs_script_kind {
     ADCGS_SCRIPT_WAIT_END,      /**< of the stream */
     ADCGS_SCRIPT_DRAG,          /**< key: button; number: from x, y to x, y */
     ADCGS_SCRIPT_MOVE,          /**< number: by dx, dy */
+    ADCGS_SCRIPT_POINT,         /**< key: a control, to its middle */
+    ADCGS_SCRIPT_CLICK,         /**< the same, and press and release it */
+    ADCGS_SCRIPT_SLIDE,         /**< number: drag the time slider from one fraction of the duration to another */
     ADCGS_SCRIPT_WHEEL,         /**< number[0]: steps */
     ADCGS_SCRIPT_KEY,           /**< key */
     ADCGS_SCRIPT_HOLD,          /**< key */
@@ -30,7 +33,7 @@ typedef struct adcgs_script_line {
     int line; /**< in the file, from 1 */
     adcgs_script_kind kind;
     int shift; /**< held during the action */
-    int key;   /**< a key as in event.h, or a button */
+    int key;   /**< a key as in event.h, a button, or an adcgs_play_control */
     double number[4];
     char *text; /**< owned by the script; NULL for lines without one */
 } adcgs_script_line;

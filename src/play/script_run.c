@@ -5,6 +5,7 @@
 #include "play/script_run.h"
 
 #include "io/image.h"
+#include "play/controls.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,10 +32,10 @@ static void press(adcgs_player *p, const adcgs_script_line *line)
         push_key(p, ADCGS_KEY_SHIFT, 0);
 }
 
-static void drag(adcgs_player *p, const adcgs_script_line *line)
+static void drag(adcgs_player *p, const adcgs_script_line *line, int button, const double n[4])
 {
-    const double *const n = line->number, dx = (n[2] - n[0]) / DRAG_STEPS, dy = (n[3] - n[1]) / DRAG_STEPS;
-    adcgs_event event = {.kind = ADCGS_EVENT_BUTTON, .button = line->key, .down = 1, .x = n[0], .y = n[1]};
+    const double dx = (n[2] - n[0]) / DRAG_STEPS, dy = (n[3] - n[1]) / DRAG_STEPS;
+    adcgs_event event = {.kind = ADCGS_EVENT_BUTTON, .button = button, .down = 1, .x = n[0], .y = n[1]};
     if (line->shift)
         push_key(p, ADCGS_KEY_SHIFT, 1);
     p->sdl->push(p->window, &event);
@@ -50,6 +51,40 @@ static void drag(adcgs_player *p, const adcgs_script_line *line)
     p->sdl->push(p->window, &event);
     if (line->shift)
         push_key(p, ADCGS_KEY_SHIFT, 0);
+}
+
+static adcgs_status wrong(const adcgs_player *p, const adcgs_script_line *line, adcgs_status status, const char *what,
+                          adcgs_error *error)
+{
+    return adcgs_fail(error, status, "%.160s: line %d: %.160s", p->settings->script, line->line, what);
+}
+
+/** Ends the script after an expectation that does not hold. */
+static void disappoint(adcgs_player *p, const adcgs_script_line *line, const char *what, adcgs_error *error)
+{
+    wrong(p, line, ADCGS_ERR_DATA, what, error);
+    p->run.failed = 1;
+    p->state.quit = 1;
+}
+
+/** Moves the pointer to a control, and presses it or drags along it. */
+static void use_control(adcgs_player *p, const adcgs_script_line *line, adcgs_error *error)
+{
+    const int slides = line->kind == ADCGS_SCRIPT_SLIDE;
+    adcgs_controls controls;
+    adcgs_controls_place(&controls, &p->state);
+    const adcgs_rect r = controls.place[slides ? (int)ADCGS_CONTROL_SLIDER : line->key];
+    const double x = r.x + r.width / 2, y = r.y + r.height / 2;
+    if (!r.width) {
+        disappoint(p, line, "the window does not show this control", error);
+        return;
+    }
+    if (slides)
+        drag(p, line, 1, (double[4]){r.x + line->number[0] * (r.width - 1), y, r.x + line->number[1] * (r.width - 1), y});
+    else
+        p->sdl->push(p->window, &(adcgs_event){.kind = ADCGS_EVENT_MOTION, .x = x, .y = y});
+    for (int down = 1; down >= 0 && line->kind == ADCGS_SCRIPT_CLICK; down--)
+        p->sdl->push(p->window, &(adcgs_event){.kind = ADCGS_EVENT_BUTTON, .button = 1, .down = down, .x = x, .y = y});
 }
 
 static outcome wait_frames(const adcgs_player *p, const adcgs_script_line *line)
@@ -68,20 +103,6 @@ static outcome wait_stream(const adcgs_player *p, const adcgs_script_line *line)
     return come->over || there >= line->number[0] ? DONE : AGAIN;
 }
 
-static adcgs_status wrong(const adcgs_player *p, const adcgs_script_line *line, adcgs_status status, const char *what,
-                          adcgs_error *error)
-{
-    return adcgs_fail(error, status, "%.160s: line %d: %.160s", p->settings->script, line->line, what);
-}
-
-/** Ends the script after an expectation that does not hold. */
-static void disappoint(adcgs_player *p, const adcgs_script_line *line, const char *what, adcgs_error *error)
-{
-    wrong(p, line, ADCGS_ERR_DATA, what, error);
-    p->run.failed = 1;
-    p->state.quit = 1;
-}
-
 static outcome wait_size(adcgs_player *p, const adcgs_script_line *line, adcgs_error *error)
 {
     char text[100];
@@ -98,6 +119,8 @@ static outcome wait_size(adcgs_player *p, const adcgs_script_line *line, adcgs_e
 static int find_value(const adcgs_player *p, const char *name, double *value)
 {
     const adcgs_play_state *const s = &p->state;
+    adcgs_controls controls;
+    adcgs_controls_place(&controls, s);
     const struct {
         const char *name;
         double value;
@@ -113,6 +136,11 @@ static int find_value(const adcgs_player *p, const char *name, double *value)
         {"help", s->help},
         {"statistics", s->statistics},
         {"bar", s->bar},
+        {"controls", controls.back.width > 0},
+        {"pointed", adcgs_play_pointed(s)},
+        {"hint", adcgs_overlay_hints(s)},
+        {"letters", controls.size},
+        {"inside", adcgs_drawing_inside(&p->overlay, s->width, s->height)},
         {"full", s->full},
         {"keys", p->keys.n},
         {"recording", s->record},
@@ -139,6 +167,7 @@ static adcgs_status expect(adcgs_player *p, const adcgs_script_line *line, adcgs
     const double *const n = line->number;
     char text[160] = "";
     double value;
+    adcgs_overlay_draw(&p->overlay, p->sdl->type(p->window), s, &p->figures);
     if (!strcmp(line->text, "size")) {
         if (s->width != (int)n[0] || s->height != (int)n[1])
             snprintf(text, sizeof text, "size is %dx%d, expected %dx%d", s->width, s->height, (int)n[0], (int)n[1]);
@@ -174,11 +203,16 @@ static void begin_shot(adcgs_player *p, const char *path)
 }
 
 /** Executes the part of a line that is done once. */
-static outcome begin(adcgs_player *p, const adcgs_script_line *line)
+static outcome begin(adcgs_player *p, const adcgs_script_line *line, adcgs_error *error)
 {
     switch (line->kind) {
+    case ADCGS_SCRIPT_POINT:
+    case ADCGS_SCRIPT_CLICK:
+    case ADCGS_SCRIPT_SLIDE:
+        use_control(p, line, error);
+        return DONE_TAKE_EVENTS;
     case ADCGS_SCRIPT_DRAG:
-        drag(p, line);
+        drag(p, line, line->key, line->number);
         return DONE_TAKE_EVENTS;
     case ADCGS_SCRIPT_MOVE:
         p->sdl->push(p->window, &(adcgs_event){.kind = ADCGS_EVENT_MOTION, .dx = line->number[0], .dy = line->number[1]});
@@ -262,7 +296,7 @@ adcgs_status adcgs_script_go(adcgs_player *p, adcgs_error *error)
             run->pictures = p->pictures;
             if (line->kind == ADCGS_SCRIPT_SCREENSHOT)
                 begin_shot(p, line->text);
-            how = begin(p, line);
+            how = begin(p, line, error);
         }
         if (how == AGAIN)
             ADCGS_TRY(go_on(p, line, &how, error));

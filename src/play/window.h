@@ -8,16 +8,8 @@
 #define ADCGS_PLAY_WINDOW_H
 
 #include "io/module.h"
+#include "play/drawing.h"
 #include "play/event.h"
-
-/** A rectangle of straight RGBA, [height][width][4], on top of the image. Width 0: none. */
-typedef struct adcgs_panel {
-    int x, y, width, height;
-    uint8_t *rgba;
-    size_t room; /**< bytes of rgba */
-} adcgs_panel;
-
-#define ADCGS_PANELS 4
 
 typedef struct adcgs_window adcgs_window;
 
@@ -27,7 +19,10 @@ typedef struct adcgs_sdl {
     /** Opens a window of the requested size, or as large as the screen allows. ADCGS_ERR_IO without a display. */
     adcgs_status (*open)(adcgs_window **out, const char *title, int width, int height, adcgs_error *error);
     void (*close)(adcgs_window **window);
-    /** Returns the size, and the pixels per unit of the desktop. */
+    /**
+     * Returns the size, and the pixels per unit of the desktop: according to the desktop, or, if it scales no windows, to the
+     * size of the screen's pixels.
+     */
     void (*size)(const adcgs_window *window, int *width, int *height, double *density);
     void (*resize)(adcgs_window *window, int width, int height);
     /** Waits for the next event, at most `milliseconds`. \return nonzero if there was one */
@@ -42,8 +37,12 @@ typedef struct adcgs_sdl {
     void (*capture)(adcgs_window *window, int on);
     /** Takes an RGB image, [height][width][3], which show() scales to the window. */
     adcgs_status (*picture)(adcgs_window *window, const uint8_t *rgb, int width, int height, adcgs_error *error);
-    /** Shows the image, if there is one, and the panels. Also copies the window to rgb, [height][width][3], if not NULL. */
-    adcgs_status (*show)(adcgs_window *window, const adcgs_panel panels[ADCGS_PANELS], uint8_t *rgb, adcgs_error *error);
+    /** Returns the widths of letters in this window. */
+    const adcgs_type *(*type)(const adcgs_window *window);
+    /** Why text is in plain built-in letters; "": it is in a font. */
+    const char *(*plain)(const adcgs_window *window);
+    /** Shows the image, if there is one, and the drawing. Also copies the window to rgb, [height][width][3], if not NULL. */
+    adcgs_status (*show)(adcgs_window *window, const adcgs_drawing *drawing, uint8_t *rgb, adcgs_error *error);
 } adcgs_sdl;
 
 /** The module's only export. */

@@ -4,19 +4,23 @@
 
 #include "play/window.h"
 
+#include "play/canvas_sdl.h"
+
 #include <SDL.h>
 
 #include <stdlib.h>
 
-#define SMALLEST 64 /* pixels, minimum width or height */
+#define SMALLEST 64      /* pixels, minimum width or height */
+#define USUAL_DPI 96.0   /* of a screen with a density of 1 */
+#define DENSITY_MIN 1.25 /* of screens: smaller differences from the usual one are none */
+#define DENSITY_MAX 3.0  /* screens that report more do not know their size */
 
 struct adcgs_window {
     SDL_Window *window;
     SDL_Renderer *renderer;
     SDL_Texture *picture;
     int picture_size[2];
-    SDL_Texture *panel[ADCGS_PANELS];
-    int panel_size[ADCGS_PANELS][2];
+    adcgs_canvas canvas;
     Uint32 wake_event;
 };
 
@@ -74,9 +78,7 @@ static void window_close(adcgs_window **window)
     *window = NULL;
     if (!w)
         return;
-    for (int i = 0; i < ADCGS_PANELS; i++)
-        if (w->panel[i])
-            SDL_DestroyTexture(w->panel[i]);
+    adcgs_canvas_clear(&w->canvas);
     if (w->picture)
         SDL_DestroyTexture(w->picture);
     if (w->renderer)
@@ -127,6 +129,7 @@ static adcgs_status open_parts(adcgs_window *w, const char *title, int width, in
         w->renderer = SDL_CreateRenderer(w->window, -1, SDL_RENDERER_SOFTWARE);
     if (!w->renderer)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.100s: cannot render in a window: %s", title, SDL_GetError());
+    adcgs_canvas_init(&w->canvas, w->renderer);
     SDL_SetWindowMinimumSize(w->window, SMALLEST, SMALLEST);
     w->wake_event = SDL_RegisterEvents(1);
     return ADCGS_OK;
@@ -143,7 +146,7 @@ static adcgs_status window_open(adcgs_window **out, const char *title, int width
     return status;
 }
 
-static void window_size(const adcgs_window *w, int *width, int *height, double *density)
+static double measure(const adcgs_window *w, int *width, int *height)
 {
     int points = 0, unused;
     SDL_GetWindowSize(w->window, &points, &unused);
@@ -151,15 +154,25 @@ static void window_size(const adcgs_window *w, int *width, int *height, double *
         SDL_GetWindowSize(w->window, width, height);
     *width = ADCGS_MAX(1, *width);
     *height = ADCGS_MAX(1, *height);
-    *density = points > 0 ? (double)*width / points : 1.0;
+    return points > 0 ? (double)*width / points : 1.0;
 }
 
+/** Pixels per desktop unit, which is the unit of mouse positions. */
 static double density_of(const adcgs_window *w)
 {
     int width, height;
-    double density;
-    window_size(w, &width, &height, &density);
-    return density;
+    return measure(w, &width, &height);
+}
+
+static void window_size(const adcgs_window *w, int *width, int *height, double *density)
+{
+    float dots = 0.0f, across, down;
+    *density = measure(w, width, height);
+    if (*density > 1.0 || SDL_GetDisplayDPI(SDL_GetWindowDisplayIndex(w->window), &dots, &across, &down))
+        return;
+    const double screen = ADCGS_MIN(dots / USUAL_DPI, DENSITY_MAX);
+    if (screen >= DENSITY_MIN)
+        *density = screen;
 }
 
 static void window_resize(adcgs_window *w, int width, int height)
@@ -177,6 +190,9 @@ static void translate_window(const SDL_WindowEvent *from, adcgs_event *out)
         break;
     case SDL_WINDOWEVENT_FOCUS_LOST:
         out->kind = ADCGS_EVENT_LOST;
+        break;
+    case SDL_WINDOWEVENT_LEAVE:
+        out->kind = ADCGS_EVENT_LEAVE;
         break;
     }
 }
@@ -222,6 +238,7 @@ static int window_event(adcgs_window *w, int milliseconds, adcgs_event *out)
         break;
     case SDL_RENDER_TARGETS_RESET:
     case SDL_RENDER_DEVICE_RESET:
+        adcgs_canvas_forget(&w->canvas);
         out->kind = ADCGS_EVENT_SIZE;
         break;
     case SDL_KEYDOWN:
@@ -305,26 +322,24 @@ static adcgs_status window_picture(adcgs_window *w, const uint8_t *rgb, int widt
     return ADCGS_OK;
 }
 
-static int draw_panel(adcgs_window *w, int index, const adcgs_panel *panel)
+static const adcgs_type *window_type(const adcgs_window *w)
 {
-    const SDL_Rect place = {panel->x, panel->y, panel->width, panel->height};
-    SDL_Texture **const texture = &w->panel[index];
-    return need_texture(w, texture, SDL_PIXELFORMAT_RGBA32, w->panel_size[index], panel->width, panel->height) &&
-           !SDL_SetTextureBlendMode(*texture, SDL_BLENDMODE_BLEND) &&
-           !SDL_UpdateTexture(*texture, NULL, panel->rgba, 4 * panel->width) &&
-           !SDL_RenderCopy(w->renderer, *texture, NULL, &place);
+    return &w->canvas.type;
 }
 
-static adcgs_status window_show(adcgs_window *w, const adcgs_panel panels[ADCGS_PANELS], uint8_t *rgb, adcgs_error *error)
+static const char *window_plain(const adcgs_window *w)
+{
+    return w->canvas.plain;
+}
+
+static adcgs_status window_show(adcgs_window *w, const adcgs_drawing *drawing, uint8_t *rgb, adcgs_error *error)
 {
     int width, height;
-    double density;
-    window_size(w, &width, &height, &density);
+    measure(w, &width, &height);
     int good = !SDL_SetRenderDrawColor(w->renderer, 0, 0, 0, 255) && !SDL_RenderClear(w->renderer);
     if (good && w->picture)
         good = !SDL_RenderCopy(w->renderer, w->picture, NULL, NULL);
-    for (int i = 0; i < ADCGS_PANELS && good; i++)
-        good = !panels[i].width || draw_panel(w, i, &panels[i]);
+    good = good && adcgs_canvas_draw(&w->canvas, drawing);
     if (good && rgb) /* before they are shown, since their contents are undefined afterwards */
         good = !SDL_RenderReadPixels(w->renderer, NULL, SDL_PIXELFORMAT_RGB24, rgb, 3 * width);
     SDL_RenderPresent(w->renderer);
@@ -343,5 +358,7 @@ const adcgs_sdl adcgs_play_table = {
     .fullscreen = window_fullscreen,
     .capture = window_capture,
     .picture = window_picture,
+    .type = window_type,
+    .plain = window_plain,
     .show = window_show,
 };

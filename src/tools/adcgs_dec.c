@@ -227,7 +227,7 @@ static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **de
 /** Plays instead of rendering a clip. */
 static adcgs_status play(const adcgs_cli *cli, const settings *s, int *mismatch, adcgs_error *error)
 {
-    const adcgs_dec_play how = {.input = s->input, .script = s->script, .request = s->request, .config = s->config};
+    const adcgs_dec_play how = {.cli = cli, .input = s->input, .script = s->script, .request = s->request, .config = s->config};
     const adcgs_status status = adcgs_dec_play_run(&how, mismatch, error);
     if (*mismatch)
         adcgs_cli_error(cli, ADCGS_OK, "%s", error->text);

@@ -8,7 +8,6 @@
 
 #ifdef HAVE_ENCODER
 
-#include "cli/cli.h"
 #include "io/file.h"
 #include "io/http.h"
 #include "io/kind.h"
@@ -140,7 +139,8 @@ static adcgs_status play_coming(const adcgs_dec_play *how, adcgs_play_settings *
 
 adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_error *error)
 {
-    adcgs_play_settings settings = {.source.path = strcmp(how->input, "-") ? how->input : "stream",
+    adcgs_play_settings settings = {.cli = how->cli,
+                                    .source.path = strcmp(how->input, "-") ? how->input : "stream",
                                     .config = how->config,
                                     .script = how->script,
                                     .interrupted = adcgs_interrupted};

@@ -4,9 +4,11 @@
 #define ADCGS_TOOLS_DEC_PLAY_H
 
 #include "camera/path.h"
+#include "cli/cli.h"
 
 /** Settings of the command line for playing. */
 typedef struct adcgs_dec_play {
+    const adcgs_cli *cli;              /**< for remarks */
     const char *input;                 /**< the stream's file */
     const char *script;                /**< NULL: the user plays */
     adcgs_camera_path_request request; /**< its camera is the first view; a single time starts paused; the window's size */

@@ -106,8 +106,8 @@ key =
 key =
 key =
 expect layers 5
-drag left 0 190 60 185
-expect frame 3 2
+slide 0 0.4
+expect frame 3
 key end
 expect frame 7
 key right

@@ -56,4 +56,32 @@ static inline double looks_at(const adcgs_orbit_control *control, const double p
     return adcgs_v3_dot(forward, to) / sqrt(adcgs_v3_dot(to, to));
 }
 
+/** A player in a window of 640x480, at second 50 of the wall clock. */
+static inline adcgs_play_state make_state(const adcgs_camera cameras[2])
+{
+    const adcgs_info info = make_info("right-handed, z up");
+    const adcgs_camera home = make_camera();
+    adcgs_play_state play;
+    adcgs_play_init(&play, &info, &home, cameras);
+    adcgs_play_resize(&play, 640, 480, 1.0);
+    adcgs_play_tick(&play, 50.0);
+    return play;
+}
+
+static inline void key(adcgs_play_state *play, int code)
+{
+    adcgs_play_event(play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = code, .down = 1});
+    adcgs_play_event(play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = code});
+}
+
+static inline void button(adcgs_play_state *play, int which, int down, double x, double y)
+{
+    adcgs_play_event(play, &(adcgs_event){.kind = ADCGS_EVENT_BUTTON, .button = which, .down = down, .x = x, .y = y});
+}
+
+static inline void motion(adcgs_play_state *play, double x, double y, double dx, double dy)
+{
+    adcgs_play_event(play, &(adcgs_event){.kind = ADCGS_EVENT_MOTION, .x = x, .y = y, .dx = dx, .dy = dy});
+}
+
 #endif

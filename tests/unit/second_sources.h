@@ -9,6 +9,8 @@ int adcgs_test_hypernerf_real(void);
 int adcgs_test_lens_images(void);
 int adcgs_test_net_weights(void);
 int adcgs_test_nets_widths(void);
+int adcgs_test_play_controls(void);
+int adcgs_test_play_window(void);
 int adcgs_test_points_draco(void);
 int adcgs_test_rigs_real(void);
 int adcgs_test_scene_faults(void);

@@ -1,41 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Input of the player without a window: events, scripts, letters and panels. */
+/** \file Input of the player without a window: events and scripts. */
 #include "play_rig.h"
+#include "second_sources.h"
 
 #include "play/actions.h"
-#include "play/overlay.h"
-#include "play/panel.h"
 #include "play/play_state.h"
 #include "play/script.h"
 
 #include <math.h>
-
-static adcgs_play_state make_state(const adcgs_camera cameras[2])
-{
-    const adcgs_info info = make_info("right-handed, z up");
-    const adcgs_camera home = make_camera();
-    adcgs_play_state play;
-    adcgs_play_init(&play, &info, &home, cameras);
-    adcgs_play_resize(&play, 640, 480, 1.0);
-    adcgs_play_tick(&play, 50.0);
-    return play;
-}
-
-static void key(adcgs_play_state *play, int code)
-{
-    adcgs_play_event(play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = code, .down = 1});
-    adcgs_play_event(play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = code});
-}
-
-static void button(adcgs_play_state *play, int which, int down, double x, double y)
-{
-    adcgs_play_event(play, &(adcgs_event){.kind = ADCGS_EVENT_BUTTON, .button = which, .down = down, .x = x, .y = y});
-}
-
-static void motion(adcgs_play_state *play, double x, double y, double dx, double dy)
-{
-    adcgs_play_event(play, &(adcgs_event){.kind = ADCGS_EVENT_MOTION, .x = x, .y = y, .dx = dx, .dy = dy});
-}
 
 static void test_keys(void **state)
 {
@@ -140,21 +112,25 @@ static void test_mouse(void **state)
     assert_true(fabs(adcgs_orbit_control_distance(&play.control) - 5.4) < 1e-9);
 }
 
-static void test_scrub(void **state)
+/** The help closes by the same key, by escape, and by a press, which does nothing else. */
+static void test_help(void **state)
 {
     adcgs_camera cameras[2] = {make_camera(), make_camera()};
     adcgs_play_state play = make_state(cameras);
+    key(&play, 'h');
+    assert_true(play.help);
+    key(&play, 'h');
+    assert_false(play.help);
+    key(&play, ADCGS_KEY_F1);
+    key(&play, ADCGS_KEY_ESCAPE);
+    assert_true(!play.help && !play.quit);
     const adcgs_orbit_control before = play.control;
-    const adcgs_rect bar = adcgs_play_bar(&play);
-    assert_true(bar.width > 400 && bar.y + bar.height == 480);
-    button(&play, 1, 1, bar.width - 1, bar.y + 3);
-    assert_int_equal(adcgs_play_clock_frame(&play.clock), 9);
-    motion(&play, bar.width / 3.0, 20, -9, -9); /* the bar is still dragged, wherever the pointer is */
-    assert_int_equal(adcgs_play_clock_frame(&play.clock), 3);
-    button(&play, 1, 0, 0, 20);
+    key(&play, 'h');
+    button(&play, 1, 1, 300, 200);
+    motion(&play, 350, 200, 50, 0);
+    button(&play, 1, 0, 350, 200);
+    assert_false(play.help);
     assert_memory_equal(&play.control, &before, sizeof before);
-    key(&play, 'b');
-    assert_int_equal(adcgs_play_bar(&play).width, 0);
 }
 
 static void test_flight(void **state)
@@ -172,78 +148,6 @@ static void test_flight(void **state)
     assert_true(play.control.camera.cam_to_world[2] > 0.05); /* turns to the right */
     key(&play, ADCGS_KEY_ESCAPE);
     assert_true(!play.flying && !play.quit);
-}
-
-/* ---- Letters and panels. ---- */
-
-static uint32_t pixel(const adcgs_panel *panel, int x, int y)
-{
-    const uint8_t *p = panel->rgba + 4 * (y * panel->width + x);
-    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
-}
-
-static void test_letters(void **state)
-{
-    static const char picture[] = "..#..."
-                                  ".#.#.."
-                                  "#...#."
-                                  "#...#."
-                                  "#####."
-                                  "#...#."
-                                  "#...#."
-                                  "......"
-                                  "......";
-    adcgs_panel panel = {0};
-    adcgs_panel_init(&panel, 60, 40, 0x01020304);
-    adcgs_panel_text(&panel, 3, 5, 2, "\nA", 0xa0b0c0d0);
-    for (int y = 0; y < 40; y++)
-        for (int x = 0; x < 60; x++) {
-            const int column = (x - 3) / 2, row = (y - 5 - 2 * ADCGS_CELL_HEIGHT) / 2;
-            const int inside = x >= 3 && y >= 5 + 2 * ADCGS_CELL_HEIGHT && column < 6 && row < 9;
-            assert_int_equal(pixel(&panel, x, y), inside && picture[6 * row + column] == '#' ? 0xa0b0c0d0 : 0x01020304);
-        }
-    /* Nothing is written beyond the edges: the sanitizers watch. */
-    adcgs_panel_text(&panel, -7, -5, 3, "cut off on all sides\nyes\nyes\nyes", 1);
-    adcgs_panel_fill(&panel, -100, -100, 1000, 1000, 0xffffffff);
-    assert_int_equal(pixel(&panel, 59, 39), 0xffffffff);
-    adcgs_panel_init(&panel, 100000, 1, 0);
-    assert_int_equal(panel.width, 0);
-    adcgs_panel_free(&panel);
-    for (int c = ' ' + 1; c < 127; c++) /* all letters exist, and no two are equal */
-        for (int d = c + 1; d < 127; d++)
-            assert_memory_not_equal(adcgs_glyph((char)c), adcgs_glyph((char)d), ADCGS_GLYPH_HEIGHT);
-    assert_ptr_equal(adcgs_glyph((char)0xe4), adcgs_glyph('?'));
-    assert_ptr_equal(adcgs_glyph('\t'), adcgs_glyph('?'));
-}
-
-static void test_overlay(void **state)
-{
-    adcgs_camera cameras[2] = {make_camera(), make_camera()};
-    const adcgs_play_figures figures = {.seconds = 0.01, .width = 640, .height = 480};
-    adcgs_play_state play = make_state(cameras);
-    adcgs_panel panels[ADCGS_PANELS] = {{0}};
-    int shown = 0;
-    adcgs_overlay_draw(panels, &play, &figures);
-    for (int i = 0; i < ADCGS_PANELS; i++)
-        shown += panels[i].width > 0;
-    assert_int_equal(shown, 1); /* the bar */
-    key(&play, 'i');
-    key(&play, 'h');
-    adcgs_play_say(&play, "%s", "a word");
-    for (int size = 64; size < 2000; size += 97) { /* in a window of any size, panels begin inside it */
-        adcgs_play_resize(&play, size, 2100 - size, 1.0 + size / 700);
-        adcgs_overlay_draw(panels, &play, &figures);
-        for (int i = 0; i < ADCGS_PANELS; i++)
-            assert_true(panels[i].width > 0 && panels[i].x >= 0 && panels[i].y >= 0 && panels[i].x < size);
-    }
-    adcgs_play_resize(&play, 640, 480, 1.0);
-    adcgs_play_tick(&play, 60.0);
-    adcgs_overlay_draw(panels, &play, &figures);
-    assert_int_equal(panels[2].width, 0);    /* the message is gone */
-    for (int i = 0; i < ADCGS_PANELS; i++) { /* at this size everything is visible */
-        assert_true(panels[i].x + panels[i].width <= 640 && panels[i].y + panels[i].height <= 480);
-        adcgs_panel_free(&panels[i]);
-    }
 }
 
 /* ---- Scripts. ---- */
@@ -273,6 +177,12 @@ static void test_script(void **state)
     assert_true(l[5].number[0] == 640.0 && l[5].number[1] == 480.0);
     assert_true(!strcmp(l[6].text, "time") && l[6].number[0] == 0.5 && l[6].number[1] == 1e-3);
     assert_true(l[7].number[1] == 65.0 && l[8].kind == ADCGS_SCRIPT_QUIT);
+    adcgs_script_clear(&script);
+    assert_int_equal(read_script(&script, "point help\nclick previous\nslide 0.25 1\n"), ADCGS_OK);
+    assert_true(script.lines[0].kind == ADCGS_SCRIPT_POINT && script.lines[0].key == ADCGS_CONTROL_HELP);
+    assert_true(script.lines[1].kind == ADCGS_SCRIPT_CLICK && script.lines[1].key == ADCGS_CONTROL_PREVIOUS);
+    assert_true(script.lines[2].kind == ADCGS_SCRIPT_SLIDE && script.lines[2].number[0] == 0.25 &&
+                script.lines[2].number[1] == 1.0);
     adcgs_script_clear(&script);
     assert_int_equal(read_script(&script, "wait 3 bytes\nwait 2 tiers\nwait 4 segments\nwait end\n"), ADCGS_OK);
     assert_true(script.n == 4 && script.lines[0].kind == ADCGS_SCRIPT_WAIT_BYTES && script.lines[0].number[0] == 3.0);
@@ -308,7 +218,13 @@ static void test_bad_scripts(void **state)
                                       "quit now",
                                       "wheel nan",
                                       "wheel 1e300",
-                                      "move 1"};
+                                      "move 1",
+                                      "point",
+                                      "click back",
+                                      "click play play",
+                                      "slide 0",
+                                      "slide 0 1.1",
+                                      "slide -0.1 1"};
     for (size_t i = 0; i < ADCGS_COUNTOF(bad); i++) {
         adcgs_script script;
         char text[100];
@@ -325,10 +241,10 @@ static void test_bad_scripts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_keys),        cmocka_unit_test(test_quit),    cmocka_unit_test(test_repeats),
-        cmocka_unit_test(test_mouse),       cmocka_unit_test(test_scrub),   cmocka_unit_test(test_flight),
-        cmocka_unit_test(test_letters),     cmocka_unit_test(test_overlay), cmocka_unit_test(test_script),
-        cmocka_unit_test(test_bad_scripts),
+        cmocka_unit_test(test_keys),        cmocka_unit_test(test_quit),   cmocka_unit_test(test_repeats),
+        cmocka_unit_test(test_mouse),       cmocka_unit_test(test_flight), cmocka_unit_test(test_script),
+        cmocka_unit_test(test_bad_scripts), cmocka_unit_test(test_help),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    const int failed = cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return failed + adcgs_test_play_controls() + adcgs_test_play_window();
 }

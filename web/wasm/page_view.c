@@ -57,7 +57,7 @@ void PAGE_EXPORT(view_resize)(int width, int height, double density)
     adcgs_play_resize(&page.state, width, height, density);
 }
 
-/** kind and key as in window.h. The page's time bar is not part of the image. */
+/** kind and key as in window.h. The page's time bar and help are not part of the image. */
 void PAGE_EXPORT(view_event)(int kind, int key, int down, int again, int button, double x, double y, double dx, double dy)
 {
     const adcgs_event event = {.kind = (adcgs_event_kind)kind,
@@ -69,14 +69,15 @@ void PAGE_EXPORT(view_event)(int kind, int key, int down, int again, int button,
                                .y = y,
                                .dx = dx,
                                .dy = dy};
-    const int bar = page.state.bar;
+    const int bar = page.state.bar, help = page.state.help;
     if (event.kind == ADCGS_EVENT_KEY) {
         adcgs_play_event(&page.state, &event);
         return;
     }
-    page.state.bar = 0;
+    page.state.bar = page.state.help = 0;
     adcgs_play_event(&page.state, &event);
     page.state.bar = bar;
+    page.state.help = help;
 }
 
 /** Fingers have no buttons: they pan, in pixels, and zoom, in steps of the wheel. */
