@@ -258,11 +258,17 @@ static void test_hint(void **state)
     free(drawing);
 }
 
+static int byte_letters(void *arg, int size, const char *text)
+{
+    return (int)strlen(text) * size;
+}
+
 /** Text is UTF-8. Names of streams may be anything. */
 static void test_text(void **state)
 {
     adcgs_camera cameras[2] = {make_camera(), make_camera()};
     adcgs_play_state play = make_state(cameras);
+    static const adcgs_type bytes = {.width = byte_letters};
     adcgs_drawing *const d = malloc(sizeof *d);
     adcgs_drawing_init(d, &adcgs_glyph_type);
     assert_int_equal(adcgs_drawing_text(d, 0, 0, 9, 1000, "\xc3\xa4\xe2\x82\xac", 1), 11);
@@ -273,6 +279,9 @@ static void test_text(void **state)
     assert_string_equal(d->text + d->shape[2].text, "\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4..."); /* cut between characters */
     assert_int_equal(adcgs_drawing_text(d, 0, 0, 9, 10, "abc", 1), 0);
     assert_int_equal(d->n, 3);
+    adcgs_drawing_init(d, &bytes);
+    adcgs_drawing_text(d, 0, 0, 1, 8, "\xe2\x82\xac\xe2\x82\xac\xe2\x82\xac", 1);
+    assert_string_equal(d->text + d->shape[0].text, "\xe2\x82\xac...");
     char longest[2000];
     memset(longest, 0xc3, sizeof longest);
     for (size_t i = 1; i < sizeof longest; i += 2)

@@ -9,6 +9,7 @@
 #include "play/window.h"
 
 #define EVENTS_MAX 1000
+#define FONTS "/usr/share/fonts/truetype/dejavu" /* Debian's fonts-dejavu-core, which bootstrap installs */
 
 static const adcgs_play_figures figures = {.seconds = 0.01, .width = 640, .height = 480};
 static const int sizes[][2] = {{320, 240}, {1280, 720}, {3840, 2160}};
@@ -152,9 +153,39 @@ static void test_fonts(void **state)
         skip();
     }
     check_sizes(s, 0.3);
-    /* Letters outside ASCII are different letters, not boxes; a text without visible letters is no failure. */
-    static const char *const texts[] = {"\xc3\xa4", "\xc3\xb1", "\xd0\xaf", "\xce\xa9"};
-    uint8_t seen[4][40 * 40];
+    adcgs_drawing_init(&s->drawing, s->sdl->type(s->window)); /* a text without visible letters is no failure */
+    adcgs_drawing_text(&s->drawing, 5, 5, 20, 100, "\xe2\x80\x8b", 0xffffffffu);
+    show(s);
+    close_screen(s);
+}
+
+static void write_fonts(const char *name, const char *contents)
+{
+    FILE *const file = fopen(name, "w");
+    assert_non_null(file);
+    fprintf(file, "<?xml version=\"1.0\"?>\n<!DOCTYPE fontconfig SYSTEM \"fonts.dtd\">\n<fontconfig>%s</fontconfig>\n", contents);
+    fclose(file);
+}
+
+/** Letters outside ASCII are different letters, not boxes, also if the usual font lacks them: the Tifinagh ones at the end. */
+static void test_letters(void **state)
+{
+    static const char *const texts[] = {"\xc3\xa4", "\xc3\xb1", "\xd0\xaf", "\xce\xa9", "\xe2\xb5\xa3", "\xe2\xb4\xb1"};
+    uint8_t seen[ADCGS_COUNTOF(texts)][40 * 40];
+    if (access(FONTS "/DejaVuSans.ttf", R_OK) || access(FONTS "/DejaVuSansMono.ttf", R_OK)) {
+        print_message("skipped: no " FONTS "\n");
+        skip();
+    }
+    write_fonts(in("mono.conf"), "<dir>" FONTS "</dir><alias><family>sans-serif</family><prefer><family>DejaVu Sans Mono</family>"
+                                 "</prefer></alias>");
+    screen *const s = open_screen(in("mono.conf"));
+    if (!s)
+        skip();
+    if (*s->sdl->plain(s->window)) {
+        print_message("skipped: %s\n", s->sdl->plain(s->window));
+        close_screen(s);
+        skip();
+    }
     resize(s, sizes[0]);
     for (size_t i = 0; i < ADCGS_COUNTOF(texts); i++) {
         adcgs_drawing_init(&s->drawing, s->sdl->type(s->window));
@@ -165,9 +196,6 @@ static void test_fonts(void **state)
         for (size_t k = 0; k < i; k++)
             assert_memory_not_equal(seen[i], seen[k], sizeof seen[i]);
     }
-    adcgs_drawing_init(&s->drawing, s->sdl->type(s->window));
-    adcgs_drawing_text(&s->drawing, 5, 5, 20, 100, "\xe2\x80\x8b", 0xffffffffu);
-    show(s);
     close_screen(s);
 }
 
@@ -183,10 +211,7 @@ static void test_plain(void **state)
                                   "#...#."
                                   "......"
                                   "......";
-    FILE *const file = fopen(in("fonts.conf"), "w");
-    assert_non_null(file);
-    fputs("<?xml version=\"1.0\"?>\n<!DOCTYPE fontconfig SYSTEM \"fonts.dtd\">\n<fontconfig></fontconfig>\n", file);
-    fclose(file);
+    write_fonts(in("fonts.conf"), "");
     screen *const s = open_screen(in("fonts.conf"));
     if (!s)
         skip();
@@ -209,6 +234,7 @@ static void test_plain(void **state)
 
 int adcgs_test_play_window(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_fonts), cmocka_unit_test(test_plain)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_fonts), cmocka_unit_test(test_letters),
+                                       cmocka_unit_test(test_plain)};
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
