@@ -35,6 +35,7 @@ typedef struct adcgs_event {
     int down;   /**< pressed, not released */
     int again;  /**< repeated, since the key is held */
     int button; /**< 1 left, 2 middle, 3 right */
+    int clicks; /**< 2: the second press of a double click */
     double x, y, dx, dy;
 } adcgs_event;
 

@@ -147,9 +147,14 @@ static void on_button(adcgs_play_state *state, const adcgs_event *event)
         state->help = 0; /* a press closes it, and has no other effect */
     else if (event->button == 1 && control != ADCGS_CONTROL_NONE)
         press(state, control, event->x);
-    else if (event->button == 1 && !state->shift)
+    else if (event->button == 1 && !state->shift) {
         state->drag = ADCGS_DRAG_ORBIT;
-    else
+        if (event->clicks == 2) {
+            state->pivot = 1;
+            state->pivot_at[0] = event->x;
+            state->pivot_at[1] = event->y;
+        }
+    } else
         state->drag = ADCGS_DRAG_PAN;
 }
 

@@ -59,6 +59,8 @@ typedef struct adcgs_play_state {
 
     adcgs_play_shot shot; /**< requested screenshot; reset when it is taken */
     int key_frame;        /**< request: 1 to add a key frame, -1 to remove the last; reset when it is done */
+    int pivot;            /**< request: a double click asks to turn about the point at pivot_at of the window */
+    double pivot_at[2];   /**< pixels */
     int record;           /**< a video is recorded */
     long recorded;        /**< its frames so far */
     int full;             /**< full screen is requested */

@@ -206,6 +206,7 @@ static void translate_mouse(const SDL_Event *from, double density, adcgs_event *
         *out = (adcgs_event){.kind = ADCGS_EVENT_BUTTON,
                              .down = from->type == SDL_MOUSEBUTTONDOWN,
                              .button = from->button.button,
+                             .clicks = from->button.clicks,
                              .x = density * from->button.x,
                              .y = density * from->button.y};
         break;
@@ -266,6 +267,7 @@ static void window_push(adcgs_window *w, const adcgs_event *event)
     case ADCGS_EVENT_BUTTON:
         to.button = (SDL_MouseButtonEvent){.type = event->down ? SDL_MOUSEBUTTONDOWN : SDL_MOUSEBUTTONUP,
                                            .button = (Uint8)event->button,
+                                           .clicks = (Uint8)event->clicks,
                                            .x = x,
                                            .y = y};
         break;

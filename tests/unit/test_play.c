@@ -133,6 +133,23 @@ static void test_help(void **state)
     assert_memory_equal(&play.control, &before, sizeof before);
 }
 
+/** A double click on the image asks for another pivot; on a control it is two clicks. */
+static void test_pivot(void **state)
+{
+    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_play_state play = make_state(cameras);
+    adcgs_event press = {.kind = ADCGS_EVENT_BUTTON, .button = 1, .down = 1, .clicks = 1, .x = 120, .y = 90};
+    adcgs_play_event(&play, &press);
+    assert_false(play.pivot);
+    press.clicks = 2;
+    adcgs_play_event(&play, &press);
+    assert_true(play.pivot && play.pivot_at[0] == 120 && play.pivot_at[1] == 90);
+    play.pivot = 0;
+    press.y = 475;
+    adcgs_play_event(&play, &press);
+    assert_false(play.pivot);
+}
+
 static void test_flight(void **state)
 {
     adcgs_camera cameras[2] = {make_camera(), make_camera()};
@@ -243,7 +260,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_keys),        cmocka_unit_test(test_quit),   cmocka_unit_test(test_repeats),
         cmocka_unit_test(test_mouse),       cmocka_unit_test(test_flight), cmocka_unit_test(test_script),
-        cmocka_unit_test(test_bad_scripts), cmocka_unit_test(test_help),
+        cmocka_unit_test(test_bad_scripts), cmocka_unit_test(test_help),   cmocka_unit_test(test_pivot),
     };
     const int failed = cmocka_run_group_tests(tests, make_folder, remove_folder);
     return failed + adcgs_test_play_controls() + adcgs_test_play_window();
