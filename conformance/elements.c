@@ -42,8 +42,8 @@ static const element_type types[] = {
                 ADCGS_LIST_STEP_FORM(ONE, MANY) ADCGS_LIST_STEP(ONE, MANY) ADCGS_LIST_STEP_SHORT(ONE, MANY)
                     ADCGS_LIST_ETA(ONE, MANY) ADCGS_LIST_GEOM(ONE, MANY) ADCGS_LIST_GRID(ONE, MANY)
                         ADCGS_LIST_SLICE_CRC(ONE, MANY) ADCGS_LIST_CAMERA(ONE, MANY) ADCGS_LIST_LENS(ONE, MANY)
-                            ADCGS_LIST_POSE(ONE, MANY) ADCGS_LIST_POSE_SHORT(ONE, MANY) ADCGS_LIST_INDEX(ONE, MANY)
-                                ADCGS_LIST_ENDC(ONE, MANY)};
+                            ADCGS_LIST_POSE(ONE, MANY) ADCGS_LIST_POSE_SHORT(ONE, MANY) ADCGS_LIST_CAMERA_TIME(ONE, MANY)
+                                ADCGS_LIST_INDEX(ONE, MANY) ADCGS_LIST_ENDC(ONE, MANY)};
 
 /** Search for the n-th element of a name. */
 typedef struct search {

@@ -2,14 +2,16 @@
 /** \file Settings of a recipe that add to lists: cameras to compare at, cameras of the stream, and its metadata. */
 #include "recipe_plan.h"
 
+#include <math.h>
 #include <stdio.h>
+
+#define CAMERA_WORDS 20
 
 /* NAME WIDTH HEIGHT FX FY CX CY NEAR M0 .. M11 */
 static adcgs_status parse_camera(const adcgs_command *c, adcgs_camera *out, adcgs_error *error)
 {
     int64_t width, height;
     double real[17];
-    ADCGS_TRY(adcgs_command_words(c, 20, 20, error));
     ADCGS_TRY(adcgs_word_int(c->word[2], 1, 16384, &width, error));
     ADCGS_TRY(adcgs_word_int(c->word[3], 1, 16384, &height, error));
     for (int i = 0; i < 17; i++)
@@ -29,20 +31,46 @@ static adcgs_status parse_camera(const adcgs_command *c, adcgs_camera *out, adcg
 adcgs_status adcgs_plan_add_camera(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     (void)user;
+    ADCGS_TRY(adcgs_command_words(c, CAMERA_WORDS, CAMERA_WORDS, error));
     if (plan->n_cameras == ADCGS_PLAN_CAMERAS)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "more than %d cameras", ADCGS_PLAN_CAMERAS);
     return parse_camera(c, &plan->cameras[plan->n_cameras++], error);
+}
+
+/* After the camera: [time=T [next]]. */
+static adcgs_status parse_time(const adcgs_command *c, adcgs_stored_camera *out, const adcgs_stored_camera *before,
+                               adcgs_error *error)
+{
+    const char *const time = c->n > CAMERA_WORDS + 1 ? adcgs_word_value(c->word[CAMERA_WORDS + 1], "time") : NULL;
+    out->time = (double)NAN;
+    out->path = -1;
+    if (c->n > CAMERA_WORDS + 1 && !time)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": expected time=T", c->word[CAMERA_WORDS + 1]);
+    if (time)
+        ADCGS_TRY(adcgs_word_real(time, &out->time, error));
+    if (c->n <= CAMERA_WORDS + 2)
+        return ADCGS_OK;
+    if (strcmp(c->word[CAMERA_WORDS + 2], "next") != 0 || !before)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": expected next, after another camera", c->word[CAMERA_WORDS + 2]);
+    out->path = before->path;
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_plan_add_stored(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     adcgs_stream *const s = &plan->stream;
     (void)user;
+    ADCGS_TRY(adcgs_command_words(c, CAMERA_WORDS, CAMERA_WORDS + 2, error));
     if (!s->cameras)
         s->cameras = adcgs_alloc(NULL, ADCGS_PLAN_CAMERAS, sizeof *s->cameras, error);
     if (!s->cameras || s->n_cameras == ADCGS_PLAN_CAMERAS)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "no memory for a stored camera, or too many of them");
-    return parse_camera(c, &s->cameras[s->n_cameras++], error);
+    adcgs_stored_camera *const to = &s->cameras[s->n_cameras], *const before = s->n_cameras ? to - 1 : NULL;
+    ADCGS_TRY(parse_camera(c, &to->camera, error));
+    if (before && c->n == CAMERA_WORDS + 3 && before->path < 0)
+        before->path = (int)s->n_cameras;
+    s->n_cameras++;
+    return parse_time(c, to, before, error);
 }
 
 static char *copy_text(const char *text, adcgs_error *error)

@@ -200,7 +200,8 @@ static void write_rest(writer *w)
     }
     line(w, "times %g %g %g", draw(w, -60, 300) / 1000.0, draw(w, 0, 99) / 1000.0, draw(w, 0, 1) ? 1e9 : -1.0);
     if (once_in(w, 4))
-        line(w, "stored a 20 16 25 25 10 8 0.01 1 0 0 %g 0 1 0 0 0 0 1 -4", draw(w, 0, 9) / 10.0);
+        line(w, "stored a 20 16 25 25 10 8 0.01 1 0 0 %g 0 1 0 0 0 0 1 -4%s", draw(w, 0, 9) / 10.0,
+             once_in(w, 2) ? " time=0.25" : "");
     if (once_in(w, 4))
         line(w, "meta title times=%d \"a b\"", draw(w, 0, 60));
     if (once_in(w, 4))

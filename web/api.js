@@ -55,11 +55,16 @@ const commands = {
             throw new TypeError('seek: expected seconds');
         seekTo(Number(seconds));
     },
-    /** camera: name or index of a stored one, 'home', or { position, target, up }. */
+    /** camera: name or index of a stored one, 'home', 'follow', or { position, target, up }. */
     setCamera(camera) {
         needScene();
         if (camera === 'home') {
             press('r'.charCodeAt(0));
+            return;
+        }
+        if (camera === 'follow') {
+            if (view.call.view_following() !== 1)
+                press('c'.charCodeAt(0));
             return;
         }
         const index = typeof camera === 'object' && camera ? -1 : storedIndex(camera);

@@ -119,6 +119,23 @@ function drawFast() {
     showed(time, false);
 }
 
+/** The worker finds the point under a place of the image: the new centre of the orbit. */
+function requestPivot() {
+    const number = view.call.view_pivot_wanted();
+    if (number)
+        worker.postMessage({ kind: 'pivot', number, scene: reading, camera: cameraOf(1), time: view.call.view_time(),
+                             x: view.call.view_pivot_at(0), y: view.call.view_pivot_at(1) });
+}
+
+/** Outside of the filmed region the image is darker; next to the filmed view there is none. */
+function showLimits() {
+    const dark = Math.round(50 * view.call.view_outside()), x = 100 * view.call.view_inset(0), y = 100 * view.call.view_inset(1);
+    for (const canvas of [$('exact'), $('fast')]) {
+        canvas.style.filter = dark ? `brightness(${100 - dark}%)` : '';
+        canvas.style.clipPath = x || y ? `inset(${y.toFixed(2)}% ${x.toFixed(2)}%)` : '';
+    }
+}
+
 function wake() {
     if (asked)
         return;
@@ -132,6 +149,8 @@ function step() {
         return;
     view.call.view_tick(performance.now() / 1000);
     fitCanvas();
+    requestPivot();
+    showLimits();
     const moving = view.call.view_moving() && !saves;
     if (gpu && gpu.lost)
         dropGpu('WebGL2 was lost');
@@ -227,6 +246,12 @@ function onReply(m) {
     case 'ready': page.module = m.module; break;
     case 'grown': takeReport(m); break;
     case 'drawn': takePicture(m); break;
+    case 'pivot':
+        if (m.scene === reading) {
+            view.call.view_pivot(m.number, ...m.point);
+            wake();
+        }
+        break;
     case 'splats':
     case 'sorted': takeSplats(m); break;
     case 'taken':

@@ -67,8 +67,8 @@ async function openScene(getSource, wanted) {
 // ---- Stored cameras. ----
 
 function storedCamera(index) {
-    const size = view.call.page_camera_size();
-    return information.cameras.slice(index * size, (index + 1) * size);
+    const at = index * view.call.page_filmed_size(); // the camera comes first in each
+    return information.cameras.slice(at, at + view.call.page_camera_size());
 }
 
 function storedNames() {

@@ -55,7 +55,7 @@ function report(arrived) {
         message.facts = factsNow();
         const cameras = call.page_cameras(), home = drawable ? call.page_home() : 0;
         if (cameras && home) {
-            message.cameras = engine.copy(cameras, message.facts.cameras * call.page_camera_size());
+            message.cameras = engine.copy(cameras, message.facts.cameras * call.page_filmed_size());
             message.home = engine.copy(home, call.page_camera_size());
             message.filter = call.page_filter();
         }
@@ -139,6 +139,14 @@ async function draw(m) {
     postMessage(reply, reply.pixels ? [reply.pixels] : []);
 }
 
+/** Answer a request for the point under a place of the image. */
+function findPivot(m) {
+    const at = drawable ? engine.with([m.camera], c => engine.call.page_pivot(c, m.time, m.x, m.y)) : 0;
+    if (at)
+        postMessage({ kind: 'pivot', number: m.number, scene: m.scene,
+                      point: new Float64Array(engine.copy(at, 24).buffer) });
+}
+
 function sorted(d) {
     return engine.copy(engine.call.page_sort(d[0], d[1], d[2]), 4 * splats).buffer;
 }
@@ -182,6 +190,7 @@ async function handle(m) {
     case 'bytes': take(m.bytes); break;
     case 'end': end(); break;
     case 'draw': await draw(m); break;
+    case 'pivot': findPivot(m); break;
     case 'splats': pack(m); break;
     case 'sort': sort(m); break;
     case 'layers': setLayers(m); break;

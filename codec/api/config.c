@@ -111,7 +111,19 @@ adcgs_status adcgs_get_camera(const adcgs_decoder *decoder, int index, adcgs_cam
     if (index < 0 || (uint32_t)index >= decoder->stream.n_cameras)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "camera %d requested; the stream has %u", index,
                           (unsigned)decoder->stream.n_cameras);
-    *camera = decoder->stream.cameras[index];
+    *camera = decoder->stream.cameras[index].camera;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_get_camera_time(const adcgs_decoder *decoder, int index, double *time, int *path, adcgs_error *error)
+{
+    adcgs_camera camera;
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(time, error);
+    ADCGS_REQUIRE(path, error);
+    ADCGS_TRY(adcgs_get_camera(decoder, index, &camera, error));
+    *time = decoder->stream.cameras[index].time;
+    *path = decoder->stream.cameras[index].path;
     return ADCGS_OK;
 }
 

@@ -2,8 +2,12 @@
 /** \file cams and meta: cameras and text stored with the scene. */
 #include "stream/parts.h"
 
+#include <math.h>
+
 #define CAMERA_SAME_LENS 1  /**< same size, intrinsics and near plane as the previous camera */
 #define CAMERA_SHORT_POSE 2 /**< the pose is twelve binary32 */
+#define CAMERA_TIMED 4      /**< a time follows */
+#define CAMERA_NEXT_KEY 8   /**< a key of the previous camera's path */
 #define CAMERAS_MAX 65535U
 #define META_MAX 1024U
 #define META_KEY_MAX 64U
@@ -35,7 +39,26 @@ static adcgs_status parse_pose(adcgs_parse *p, int flags, double pose[12])
     return ADCGS_OK;
 }
 
-static adcgs_status parse_camera(adcgs_parse *p, adcgs_camera *c, const adcgs_camera *before, adcgs_memory *memory)
+/** Reads the time, and sets the path. paths: number of paths so far. */
+static adcgs_status parse_time(adcgs_parse *p, int flags, adcgs_stored_camera *c, adcgs_stored_camera *before, int *paths)
+{
+    adcgs_syn_camera_time filmed = {.camera_time = (double)NAN};
+    if (flags & CAMERA_TIMED)
+        ADCGS_TRY(adcgs_syn_camera_time_parse(p, &filmed));
+    c->time = filmed.camera_time;
+    c->path = -1;
+    if (!(flags & CAMERA_NEXT_KEY))
+        return ADCGS_OK;
+    if (!before || !(c->time > before->time)) /* also if one of them has no time */
+        return adcgs_fail(p->error, ADCGS_ERR_DATA,
+                          "cams: camera_flags is %d, but the camera is not later than one with a time before it", flags);
+    if (before->path < 0)
+        before->path = (*paths)++;
+    c->path = before->path;
+    return ADCGS_OK;
+}
+
+static adcgs_status parse_camera(adcgs_parse *p, adcgs_camera *c, const adcgs_camera *before, int *flags, adcgs_memory *memory)
 {
     adcgs_syn_camera head;
     adcgs_syn_lens lens;
@@ -44,6 +67,7 @@ static adcgs_status parse_camera(adcgs_parse *p, adcgs_camera *c, const adcgs_ca
     memcpy(c->name, name, strlen(name));
     adcgs_free(memory, name);
     ADCGS_TRY(adcgs_syn_camera_parse(p, &head));
+    *flags = head.camera_flags;
     if (!(head.camera_flags & CAMERA_SAME_LENS)) {
         ADCGS_TRY(adcgs_syn_lens_parse(p, &lens));
         set_lens(c, &lens);
@@ -65,6 +89,7 @@ static adcgs_status parse_camera(adcgs_parse *p, adcgs_camera *c, const adcgs_ca
 adcgs_status adcgs_cams_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory *memory)
 {
     uint32_t n;
+    int paths = 0;
     if (stream->cameras)
         return adcgs_fail(p->error, ADCGS_ERR_DATA, "cams: the stream has more than one such chunk");
     ADCGS_TRY(adcgs_parse_varint(p, "cameras", 1, CAMERAS_MAX, &n));
@@ -74,8 +99,10 @@ adcgs_status adcgs_cams_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory
     if (!stream->cameras)
         return adcgs_alloc_status(p->error);
     for (; stream->n_cameras < n; stream->n_cameras++) {
-        adcgs_camera *c = &stream->cameras[stream->n_cameras];
-        ADCGS_TRY(parse_camera(p, c, stream->n_cameras > 0 ? c - 1 : NULL, memory));
+        adcgs_stored_camera *c = &stream->cameras[stream->n_cameras], *before = stream->n_cameras > 0 ? c - 1 : NULL;
+        int flags;
+        ADCGS_TRY(parse_camera(p, &c->camera, before ? &before->camera : NULL, &flags, memory));
+        ADCGS_TRY(parse_time(p, flags, c, before, &paths));
     }
     return adcgs_parse_end(p);
 }
@@ -113,11 +140,18 @@ static int fits_binary32(const double pose[12])
     return 1;
 }
 
-static adcgs_status write_camera(adcgs_buffer *out, const adcgs_camera *c, const adcgs_camera *before, adcgs_error *error)
+static int flags_of_time(const adcgs_stored_camera *c, const adcgs_stored_camera *before)
+{
+    const int next = before && c->path >= 0 && c->path == before->path;
+    return (isnan(c->time) ? 0 : CAMERA_TIMED) + next * CAMERA_NEXT_KEY;
+}
+
+static adcgs_status write_camera(adcgs_buffer *out, const adcgs_camera *c, const adcgs_camera *before, int flags,
+                                 adcgs_error *error)
 {
     const adcgs_syn_lens lens = lens_of(c);
     const int same = before && same_lens(c, before), brief = fits_binary32(c->cam_to_world);
-    const adcgs_syn_camera head = {(uint8_t)(same * CAMERA_SAME_LENS + brief * CAMERA_SHORT_POSE)};
+    const adcgs_syn_camera head = {(uint8_t)(flags + same * CAMERA_SAME_LENS + brief * CAMERA_SHORT_POSE)};
     const char *end = memchr(c->name, 0, sizeof c->name);
     if (!end)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "cams: a camera's name has no terminating zero");
@@ -135,14 +169,25 @@ static adcgs_status write_camera(adcgs_buffer *out, const adcgs_camera *c, const
     return brief ? adcgs_syn_pose_short_write(out, "cams", &short_pose, error) : adcgs_syn_pose_write(out, "cams", &pose, error);
 }
 
+static adcgs_status write_stored(adcgs_buffer *out, const adcgs_stored_camera *c, const adcgs_stored_camera *before,
+                                 adcgs_error *error)
+{
+    const int flags = flags_of_time(c, before);
+    const adcgs_syn_camera_time filmed = {c->time};
+    if (flags & CAMERA_NEXT_KEY && !(c->time > before->time))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "cams: the keys of path %d are not in ascending time", c->path);
+    ADCGS_TRY(write_camera(out, &c->camera, before ? &before->camera : NULL, flags, error));
+    return flags & CAMERA_TIMED ? adcgs_syn_camera_time_write(out, "cams", &filmed, error) : ADCGS_OK;
+}
+
 adcgs_status adcgs_cams_write(adcgs_buffer *out, const adcgs_stream *stream, adcgs_error *error)
 {
-    const adcgs_camera *c = stream->cameras;
+    const adcgs_stored_camera *c = stream->cameras;
     if (stream->n_cameras > CAMERAS_MAX)
         return adcgs_fail(error, ADCGS_ERR_LIMIT, "cams: %u cameras, expected at most %u", stream->n_cameras, CAMERAS_MAX);
     adcgs_write_varint(out, stream->n_cameras);
     for (uint32_t i = 0; i < stream->n_cameras; i++)
-        ADCGS_TRY(write_camera(out, &c[i], i > 0 ? &c[i - 1] : NULL, error));
+        ADCGS_TRY(write_stored(out, &c[i], i > 0 ? &c[i - 1] : NULL, error));
     return ADCGS_OK;
 }
 

@@ -16,6 +16,13 @@ typedef struct adcgs_meta {
     char *key, *value; /**< UTF-8, owned */
 } adcgs_meta;
 
+/** A camera stored with the scene. */
+typedef struct adcgs_stored_camera {
+    adcgs_camera camera;
+    double time; /**< seconds at which it filmed; NaN: none */
+    int path;    /**< number of the filmed path that it is a key of; -1: none. Keys of a path follow each other in time */
+} adcgs_stored_camera;
+
 typedef struct adcgs_stream {
     uint8_t profile, level, arith; /**< level 0, for writing: the lowest that fits */
     uint8_t slice_log2;            /**< anchors per slice = 2^slice_log2 */
@@ -30,7 +37,7 @@ typedef struct adcgs_stream {
     uint8_t axes;         /**< 0 unknown, 1 right-handed y up, 2 right-handed z up, 3 right-handed y down */
     uint8_t units;        /**< 0 unknown, 1 metre */
     uint32_t n_cameras;
-    adcgs_camera *cameras; /**< [n_cameras] */
+    adcgs_stored_camera *cameras; /**< [n_cameras] */
     uint32_t n_meta;
     adcgs_meta *meta;
     uint32_t n_segments;

@@ -98,7 +98,7 @@
 
 #define ADCGS_LIST_SLICE_CRC(F, V) F(U32, slice_crc, 0, 4294967295.0)
 
-#define ADCGS_LIST_CAMERA(F, V) F(U8, camera_flags, 0, 3)
+#define ADCGS_LIST_CAMERA(F, V) F(U8, camera_flags, 0, 15)
 #define ADCGS_LIST_LENS(F, V)                        \
     F(U16, width, 1, 16384)                          \
     F(U16, height, 1, 16384)                         \
@@ -109,6 +109,8 @@
     F(F64, near_plane, 1 / ADCGS_WORLD_MAX, ADCGS_WORLD_MAX)
 #define ADCGS_LIST_POSE(F, V) V(F64, cam_to_world, 12, -ADCGS_WORLD_MAX, ADCGS_WORLD_MAX)
 #define ADCGS_LIST_POSE_SHORT(F, V) V(F32, cam_to_world_short, 12, -ADCGS_WORLD_MAX, ADCGS_WORLD_MAX)
+
+#define ADCGS_LIST_CAMERA_TIME(F, V) F(F64, camera_time, -ADCGS_WORLD_MAX, ADCGS_WORLD_MAX)
 
 #define ADCGS_LIST_INDEX(F, V)                             \
     F(I64, start_ticks, -ADCGS_TICKS_MAX, ADCGS_TICKS_MAX) \
@@ -147,6 +149,7 @@
     X(LENS, adcgs_syn_lens)                 \
     X(POSE, adcgs_syn_pose)                 \
     X(POSE_SHORT, adcgs_syn_pose_short)     \
+    X(CAMERA_TIME, adcgs_syn_camera_time)   \
     X(INDEX, adcgs_syn_index)               \
     X(ENDC, adcgs_syn_endc)
 

@@ -26,6 +26,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "adcgs_frame_digest": (None, [POINTER(s.adcgs_frame), _digest]),
     "adcgs_frame_to_u8": (None, [POINTER(s.adcgs_frame), c_void_p]),
     "adcgs_get_camera": (c_int, [_decoder, c_int, _camera, _error]),
+    "adcgs_get_camera_time": (c_int, [_decoder, c_int, POINTER(c_double), POINTER(c_int), _error]),
     "adcgs_get_info": (c_int, [_decoder, POINTER(s.adcgs_info), c_size_t, _error]),
     "adcgs_get_metadata": (c_char_p, [_decoder, c_char_p]),
     "adcgs_get_metadata_key": (c_char_p, [_decoder, c_int]),

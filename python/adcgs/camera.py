@@ -20,6 +20,8 @@ class Camera:
     cam_to_world    12 numbers, row-major 3x4 [R|c]: R orthonormal, c the camera's centre in world units
     near_plane      world units, above 0: nothing closer is rendered
     name            at most 63 bytes
+    time            seconds at which a stored camera filmed, or None
+    path            number of the filmed path that a stored camera is a key of, or None
     """
 
     width: int
@@ -31,6 +33,8 @@ class Camera:
     cam_to_world: Sequence[float]
     near_plane: float = 0.01
     name: str = ""
+    time: float | None = None
+    path: int | None = None
 
     @classmethod
     def from_gsplat(cls, viewmat: Any, K: Any, width: int, height: int, near_plane: float = 0.01, name: str = "") -> Camera:
@@ -79,6 +83,6 @@ def to_struct(camera: Camera) -> s.adcgs_camera:
     return out
 
 
-def from_struct(camera: s.adcgs_camera) -> Camera:
+def from_struct(camera: s.adcgs_camera, time: float | None = None, path: int | None = None) -> Camera:
     return Camera(camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, tuple(camera.cam_to_world),
-                  camera.near_plane, camera.name.decode("utf-8", "replace"))
+                  camera.near_plane, camera.name.decode("utf-8", "replace"), time, path)

@@ -211,8 +211,10 @@ class Decoder:
                     return camera
             raise KeyError(f"{which}: no stored camera has that name")
         view = s.adcgs_camera()
+        time, path = ctypes.c_double(), ctypes.c_int()
         self._call(lib.adcgs_get_camera, which, ctypes.byref(view))
-        return from_struct(view)
+        self._call(lib.adcgs_get_camera_time, which, ctypes.byref(time), ctypes.byref(path))
+        return from_struct(view, None if math.isnan(time.value) else time.value, path.value if path.value >= 0 else None)
 
     @property
     def metadata(self) -> dict[str, str]:

@@ -13,6 +13,7 @@
 #define POLE 0.01     /* smallest angle [radians] between the view and up or down */
 #define NEAREST 1e-3  /* smallest depth of the target [scene units] */
 #define FARTHEST 1e5  /* largest distance from the centre [scene units], far below the limit of a view */
+#define CROP_MOST 2.0 /* the camera's width or height, relative to the part of it that an image shows */
 #define ZOOM_STEP 0.9 /* factor of the target's depth per step */
 
 /** A column of the matrix: 0 right, 1 down, 2 forward, 3 position. */
@@ -45,6 +46,11 @@ void adcgs_orbit_control_jump(adcgs_orbit_control *control, const adcgs_camera *
 {
     control->camera = *camera;
     memcpy(control->target, control->centre, sizeof control->target);
+}
+
+void adcgs_orbit_control_pivot(adcgs_orbit_control *control, const double point[3])
+{
+    memcpy(control->target, point, sizeof control->target);
 }
 
 /** Depth of the target seen from the camera, at least NEAREST. */
@@ -190,8 +196,25 @@ double adcgs_orbit_control_distance(const adcgs_orbit_control *control)
     return sqrt(adcgs_v3_dot(place, place));
 }
 
+/** The shape of the part of the camera's view that fills an image of a size: width over height. */
+static double shape_of(const adcgs_orbit_control *control, int width, int height)
+{
+    const double filmed = (double)control->camera.width / control->camera.height;
+    return ADCGS_MAX(filmed / CROP_MOST, ADCGS_MIN((double)width / height, filmed * CROP_MOST));
+}
+
+double adcgs_orbit_control_inset(const adcgs_orbit_control *control, int width, int height, int axis)
+{
+    const double part = shape_of(control, width, height) * height / width;
+    return 0.5 * ADCGS_MAX(0, 1 - (axis ? 1 / part : part));
+}
+
 void adcgs_orbit_control_view(const adcgs_orbit_control *control, int width, int height, adcgs_camera *out)
 {
+    const double shape = shape_of(control, width, height);
     *out = control->camera;
-    adcgs_camera_fit(out, width, height, 0);
+    /* First a part of the view with the window's shape, as far as half of the view remains; then more at two sides. */
+    adcgs_camera_fit(out, ADCGS_MAX(1, (int)rint(height * shape)), height, 1);
+    if (out->width != width)
+        adcgs_camera_fit(out, width, height, 0);
 }

@@ -24,6 +24,9 @@ void adcgs_orbit_control_init(adcgs_orbit_control *control, const adcgs_info *in
 /** Take the pose and lens of another camera, and orbit about the scene's centre again. */
 void adcgs_orbit_control_jump(adcgs_orbit_control *control, const adcgs_camera *camera);
 
+/** Orbit about this point from now on. The camera does not change. */
+void adcgs_orbit_control_pivot(adcgs_orbit_control *control, const double point[3]);
+
 /**
  * Turn the whole camera about the target: yaw about up, then pitch about the horizontal. The distance and the target's position
  * in the image are unchanged. Pitch is limited so that the camera never looks straight up or down.
@@ -43,9 +46,11 @@ void adcgs_orbit_control_land(adcgs_orbit_control *control);
 /** Distance from camera to target, world units. */
 double adcgs_orbit_control_distance(const adcgs_orbit_control *control);
 /**
- * The camera for an image of another size, with square pixels if the camera has them. The image contains the camera's whole view,
- * and more at two sides if the aspect ratios differ.
+ * The camera for an image of another size, with square pixels if the camera has them. If the aspect ratios differ, the image
+ * shows a part of the camera's view, which fills it: at least half of it, and more next to it if that does not fill the image.
  */
 void adcgs_orbit_control_view(const adcgs_orbit_control *control, int width, int height, adcgs_camera *out);
+/** The share of that image's width (axis 0) or height (axis 1) at each of two sides that is next to the camera's view. */
+double adcgs_orbit_control_inset(const adcgs_orbit_control *control, int width, int height, int axis);
 
 #endif

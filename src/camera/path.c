@@ -4,12 +4,15 @@
 
 #include "camera/path.h"
 
+#include "camera/follow.h"
+#include "camera/pivot.h"
 #include "camera/rotation.h"
 #include "cli/cli.h"
 
 #include <adcgs/decoder.h>
 
 #include <math.h>
+#include <stdlib.h>
 
 #define FULL_TURN 6.283185307179586
 
@@ -42,17 +45,17 @@ adcgs_status adcgs_camera_path_check_times(const adcgs_info *info, const adcgs_c
     return ADCGS_OK;
 }
 
-/** Turn a camera about the axis through the scene's centre. */
-static void turn_camera(adcgs_camera *camera, const adcgs_info *info, const double up[3], double angle)
+/** Turn a camera about the axis through a point. */
+static void turn_camera(adcgs_camera *camera, const double centre[3], const double up[3], double angle)
 {
     double *m = camera->cam_to_world;
     for (int c = 0; c < 4; c++) {
         double v[3];
         for (int i = 0; i < 3; i++)
-            v[i] = m[4 * i + c] - (c == 3 ? info->scene_origin[i] : 0.0);
+            v[i] = m[4 * i + c] - (c == 3 ? centre[i] : 0.0);
         adcgs_rotate_about(up, angle, v);
         for (int i = 0; i < 3; i++)
-            m[4 * i + c] = v[i] + (c == 3 ? info->scene_origin[i] : 0.0);
+            m[4 * i + c] = v[i] + (c == 3 ? centre[i] : 0.0);
     }
 }
 
@@ -119,16 +122,21 @@ static int is_named(const adcgs_camera_path_request *request, const char *name)
     return request->camera && !strcmp(request->camera, name);
 }
 
-static void make_orbit(adcgs_camera_path *out, const adcgs_rig *rig, const adcgs_info *info, const double up[3])
+/** Turns the first camera about the point in the middle of its image, or without one about the scene's centre. */
+static void make_orbit(adcgs_camera_path *out, const adcgs_rig *rig, adcgs_decoder *decoder, const adcgs_info *info,
+                       const double up[3])
 {
+    double centre[3];
+    if (!out->n || adcgs_pivot_find(centre, decoder, &rig->cameras[0], out->frame[0].time, 0.5, 0.5, NULL) != ADCGS_OK)
+        memcpy(centre, info->scene_origin, sizeof centre);
     for (int i = 0; i < out->n; i++) {
         out->frame[i].camera = rig->cameras[0];
-        turn_camera(&out->frame[i].camera, info, up, FULL_TURN * i / out->n);
+        turn_camera(&out->frame[i].camera, centre, up, FULL_TURN * i / out->n);
     }
 }
 
 /** Paths based on the stored cameras, or on a default one. */
-static adcgs_status make_from_rig(adcgs_camera_path *out, const adcgs_decoder *decoder, const adcgs_info *info,
+static adcgs_status make_from_rig(adcgs_camera_path *out, adcgs_decoder *decoder, const adcgs_info *info,
                                   const adcgs_camera_path_request *request, adcgs_error *error)
 {
     const int is_bullet = is_named(request, "bullet");
@@ -142,8 +150,54 @@ static adcgs_status make_from_rig(adcgs_camera_path *out, const adcgs_decoder *d
     else if (status == ADCGS_OK && is_named(request, "spiral"))
         adcgs_rig_spiral(&rig, out);
     else if (status == ADCGS_OK)
-        make_orbit(out, &rig, info, up);
+        make_orbit(out, &rig, decoder, info, up);
     adcgs_rig_clear(&rig);
+    return status;
+}
+
+/** The camera of a filmed path at each time. */
+static adcgs_status make_from_film(adcgs_camera_path *out, const adcgs_follow *follow, const adcgs_info *info,
+                                   const adcgs_camera_path_request *request, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_camera_path_times(out, info, request, ADCGS_PATH_FIXED, error));
+    for (int i = 0; i < out->n; i++)
+        adcgs_follow_at(follow, out->frame[i].time, &out->frame[i].camera);
+    return ADCGS_OK;
+}
+
+/** The first filmed path; follow->spline.n is 0 if the stream has none. */
+static adcgs_status find_film(adcgs_follow *follow, const adcgs_decoder *decoder, const adcgs_info *info, adcgs_error *error)
+{
+    *follow = (adcgs_follow){.begin = 0};
+    adcgs_filmed_camera *const cameras = calloc((size_t)info->cameras + 1, sizeof *cameras);
+    if (!cameras)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %d cameras", info->cameras);
+    adcgs_status status = adcgs_filmed_cameras_get(cameras, decoder, info, error);
+    if (status == ADCGS_OK)
+        status = adcgs_follow_init(follow, cameras, info->cameras, 0, error);
+    free(cameras);
+    return status;
+}
+
+/** Follows the filmed path if it is requested, or by default if there is one; *done: whether it does. */
+static adcgs_status try_film(adcgs_camera_path *out, const adcgs_decoder *decoder, const adcgs_info *info,
+                             const adcgs_camera_path_request *request, int *done, adcgs_error *error)
+{
+    const int wanted = is_named(request, "follow");
+    adcgs_follow follow;
+    *done = 0;
+    if (request->camera && !wanted)
+        return ADCGS_OK;
+    ADCGS_TRY(find_film(&follow, decoder, info, error));
+    adcgs_status status = ADCGS_OK;
+    if (follow.spline.n) {
+        status = make_from_film(out, &follow, info, request, error);
+        *done = 1;
+    } else if (wanted)
+        status = adcgs_fail(error, ADCGS_ERR_USAGE,
+                            "--camera follow: the stream stores no filmed path, only %d camera%s; try --camera 0 or orbit",
+                            info->cameras, info->cameras == 1 ? "" : "s");
+    adcgs_follow_clear(&follow);
     return status;
 }
 
@@ -175,9 +229,13 @@ static adcgs_status make_from_file(adcgs_camera_path *out, const adcgs_decoder *
     return adcgs_camera_path_read(out, info, request, &like, error);
 }
 
-static adcgs_status make_shots(adcgs_camera_path *out, const adcgs_decoder *decoder, const adcgs_info *info,
+static adcgs_status make_shots(adcgs_camera_path *out, adcgs_decoder *decoder, const adcgs_info *info,
                                const adcgs_camera_path_request *request, adcgs_error *error)
 {
+    int done;
+    ADCGS_TRY(try_film(out, decoder, info, request, &done, error));
+    if (done)
+        return ADCGS_OK;
     if (is_path(request->camera))
         return make_from_file(out, decoder, info, request, error);
     if (is_named(request, "orbit") || is_named(request, "spiral") || is_named(request, "bullet") ||
@@ -186,8 +244,8 @@ static adcgs_status make_shots(adcgs_camera_path *out, const adcgs_decoder *deco
     return make_from_camera(out, decoder, info, request, error);
 }
 
-adcgs_status adcgs_camera_path_make(adcgs_camera_path *out, const adcgs_decoder *decoder,
-                                    const adcgs_camera_path_request *request, adcgs_error *error)
+adcgs_status adcgs_camera_path_make(adcgs_camera_path *out, adcgs_decoder *decoder, const adcgs_camera_path_request *request,
+                                    adcgs_error *error)
 {
     adcgs_info info;
     *out = (adcgs_camera_path){0};

@@ -33,8 +33,8 @@ typedef enum adcgs_rotation_order {
 extern const char *const adcgs_rotation_orders[];
 
 typedef struct adcgs_camera_path_request {
-    const char *camera;         /**< name or index of a stored camera, orbit, spiral, bullet, or the file of a path; NULL: 0, else
-                             orbit */
+    const char *camera;         /**< name or index of a stored camera, follow, orbit, spiral, bullet, or the file of a path; NULL:
+                             follow, without a filmed path the camera 0, without cameras orbit */
     adcgs_rotation_order order; /**< of the angles in a .chan file */
     int has_times;
     double begin, end; /**< seconds; by default the stream's whole span */
@@ -50,8 +50,9 @@ adcgs_status adcgs_camera_find_stored(int *index, const adcgs_decoder *decoder, 
                                       const char *advice, adcgs_error *error);
 /** ADCGS_ERR_USAGE if times are given and none of them is in the stream. */
 adcgs_status adcgs_camera_path_check_times(const adcgs_info *info, const adcgs_camera_path_request *request, adcgs_error *error);
-adcgs_status adcgs_camera_path_make(adcgs_camera_path *out, const adcgs_decoder *decoder,
-                                    const adcgs_camera_path_request *request, adcgs_error *error);
+/** The decoder is used to find the centre of an orbit, if it has a segment to render. */
+adcgs_status adcgs_camera_path_make(adcgs_camera_path *out, adcgs_decoder *decoder, const adcgs_camera_path_request *request,
+                                    adcgs_error *error);
 void adcgs_camera_path_free(adcgs_camera_path *frames);
 
 /**
@@ -72,7 +73,10 @@ typedef struct adcgs_camera_key {
  */
 adcgs_status adcgs_camera_keys_write(const adcgs_camera_key *keys, int n, int has_times, const adcgs_info *info,
                                      double frame_rate, adcgs_rotation_order order, const char *path, adcgs_error *error);
-/** The same for frames, or if NULL for the stored cameras, one per second, as a start for a path of one's own. */
+/**
+ * The same for frames. If NULL, for the filmed path with its times; without such a path for the stored cameras, one per second,
+ * as a start for a path of one's own.
+ */
 adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const adcgs_camera_path *frames, adcgs_rotation_order order,
                                      const char *path, adcgs_error *error);
 

@@ -52,12 +52,26 @@ static void fit_size(adcgs_camera_key *keys, int n)
         adcgs_camera_fit(&keys[i].frame.camera, keys[0].frame.camera.width, keys[0].frame.camera.height, 0);
 }
 
-static adcgs_status fill_stored(adcgs_camera_key *keys, const adcgs_decoder *decoder, int n, adcgs_error *error)
+/** The keys of the filmed path, *timed 1, or all stored cameras. *n: their number, on entry that of the stored cameras. */
+static adcgs_status fill_stored(adcgs_camera_key *keys, const adcgs_decoder *decoder, int *n, int *timed, adcgs_error *error)
 {
-    for (int i = 0; i < n; i++) {
+    const int all = *n;
+    double time;
+    int path;
+    *n = *timed = 0;
+    for (int i = 0; i < all; i++) {
+        ADCGS_TRY(adcgs_get_camera_time(decoder, i, &time, &path, error));
+        if (path != 0)
+            continue;
+        keys[*n].at = keys[*n].frame.time = time;
+        ADCGS_TRY(adcgs_get_camera(decoder, i, &keys[(*n)++].frame.camera, error));
+    }
+    *timed = *n > 0;
+    for (int i = 0; i < all && !*timed; i++) {
         keys[i].at = i;
         ADCGS_TRY(adcgs_get_camera(decoder, i, &keys[i].frame.camera, error));
     }
+    *n = *timed ? *n : all;
     return ADCGS_OK;
 }
 
@@ -73,17 +87,17 @@ adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const adcgs_c
 {
     adcgs_info info;
     ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
-    const int n = frames ? frames->n : info.cameras;
+    int timed = frames != NULL, n = frames ? frames->n : info.cameras;
     if (!n)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: the stream stores no cameras to write", path);
     adcgs_camera_key *const keys = calloc((size_t)n, sizeof *keys);
     if (!keys)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %d cameras", path, n);
-    adcgs_status status = frames ? fill_frames(keys, frames) : fill_stored(keys, decoder, n, error);
+    adcgs_status status = frames ? fill_frames(keys, frames) : fill_stored(keys, decoder, &n, &timed, error);
     const double rate = frames ? frames->frame_rate : info.frame_rate;
     fit_size(keys, n);
     if (status == ADCGS_OK)
-        status = adcgs_camera_keys_write(keys, n, frames != NULL, &info, rate, order, path, error);
+        status = adcgs_camera_keys_write(keys, n, timed, &info, rate, order, path, error);
     free(keys);
     return status;
 }

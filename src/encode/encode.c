@@ -2,8 +2,8 @@
 /** \file From a training run to a stream. */
 #include "encode/encode.h"
 
-#include "data/group_views.h"
 #include "encode/quantise.h"
+#include "encode/stored_cameras.h"
 #include "model/inter.h"
 #include "model/model_priv.h"
 #include "render/render.h"
@@ -45,25 +45,6 @@ static adcgs_status set_notes(adcgs_stream *s, const adcgs_encode_note *notes, u
             return adcgs_alloc_status(error);
     }
     return s->meta ? ADCGS_OK : adcgs_alloc_status(error);
-}
-
-/** Stores a few training cameras, spread evenly over the split. Fixed cameras that recur at every time are stored once. */
-static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs_error *error)
-{
-    const adcgs_scene_view *views = scene->views[ADCGS_SPLIT_TRAIN];
-    const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN];
-    s->cameras = adcgs_alloc(NULL, ADCGS_ENCODE_CAMERAS_MAX, sizeof *s->cameras, error);
-    if (!s->cameras)
-        return adcgs_alloc_status(error);
-    for (uint32_t i = 0; i < ADCGS_ENCODE_CAMERAS_MAX; i++) {
-        const adcgs_camera *c = &views[(uint64_t)i * all / ADCGS_ENCODE_CAMERAS_MAX].camera;
-        int known = 0;
-        for (uint32_t j = 0; j < s->n_cameras; j++)
-            known |= !adcgs_camera_compare(&s->cameras[j], c);
-        if (!known)
-            s->cameras[s->n_cameras++] = *c;
-    }
-    return ADCGS_OK;
 }
 
 /** True if the times are whole numbers of ticks, with `parts` ticks a frame. */
@@ -126,7 +107,7 @@ adcgs_status adcgs_encode_begin(adcgs_stream *s, const adcgs_scene *scene, const
     s->axes = scene->axes;
     s->units = scene->units;
     set_time(s, scene, cuts);
-    ADCGS_TRY(set_cameras(s, scene, error));
+    ADCGS_TRY(adcgs_stored_cameras_choose(s, scene, error));
     ADCGS_TRY(set_notes(s, notes, n_notes, error));
     s->segments = adcgs_alloc(NULL, cuts->n, sizeof *s->segments, error);
     return s->segments ? ADCGS_OK : adcgs_alloc_status(error);

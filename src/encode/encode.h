@@ -10,17 +10,12 @@
 #include "stream/stream.h"
 #include "train/trainer.h"
 
-#define ADCGS_ENCODE_CAMERAS_MAX 8
-
 /** A line of the stream's metadata. */
 typedef struct adcgs_encode_note {
     const char *key, *value;
 } adcgs_encode_note;
 
-/**
- * Fills stream (cleared by the caller, also on failure) from the run. At most ADCGS_ENCODE_CAMERAS_MAX training cameras are
- * stored.
- */
+/** Fills stream (cleared by the caller, also on failure) from the run. stored_cameras.h chooses the cameras. */
 adcgs_status adcgs_encode_stream(adcgs_stream *stream, const adcgs_trainer *trainer, const adcgs_encode_note *notes,
                                  uint32_t n_notes, adcgs_error *error);
 

@@ -75,7 +75,7 @@ static int are_near(const adcgs_camera *a, const adcgs_camera *b, double scale)
 adcgs_status adcgs_encode_live_check(const adcgs_encode_live *e, const adcgs_scene *scene, adcgs_error *error)
 {
     for (uint32_t i = 0; i < e->front.n_cameras; i++) {
-        const adcgs_camera *const c = &e->front.cameras[i];
+        const adcgs_camera *const c = &e->front.cameras[i].camera;
         const adcgs_scene_view *v = scene->views[ADCGS_SPLIT_TRAIN], *const end = v + scene->n_views[ADCGS_SPLIT_TRAIN];
         while (v < end && strcmp(v->camera.name, c->name) != 0)
             v++;

@@ -5,6 +5,7 @@
 #include "play/actions.h"
 
 #include "cli/text.h"
+#include "play/by_hand.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -24,7 +25,10 @@ static void place_camera(adcgs_play_state *state, int index, const adcgs_camera 
 {
     state->jumped = index;
     state->flying = 0;
+    if (state->filmed)
+        state->filmed->following = 0;
     adcgs_orbit_control_jump(&state->control, camera);
+    adcgs_play_placed(state);
 }
 
 static void do_play(adcgs_play_state *state, int unused)
@@ -66,8 +70,8 @@ static void do_camera(adcgs_play_state *state, int index)
         adcgs_play_say(state, "the stream stores %d camera%s", state->cameras, state->cameras == 1 ? "" : "s");
         return;
     }
-    place_camera(state, index, &state->stored[index]);
-    adcgs_play_say(state, "camera %d %s", index, state->stored[index].name);
+    place_camera(state, index, &state->stored[index].camera);
+    adcgs_play_say(state, "camera %d %s", index, state->stored[index].camera.name);
 }
 
 static void do_next(adcgs_play_state *state, int step)
@@ -76,14 +80,50 @@ static void do_next(adcgs_play_state *state, int step)
     do_camera(state, state->cameras ? (from + step + state->cameras) % state->cameras : 0);
 }
 
+static void follow(adcgs_play_state *state)
+{
+    state->jumped = -1;
+    state->flying = 0;
+    adcgs_filmed_view_start(state->filmed, &state->control, adcgs_play_clock_time(&state->clock));
+    adcgs_play_placed(state);
+}
+
+static void do_follow(adcgs_play_state *state, int unused)
+{
+    if (!state->filmed || !adcgs_filmed_view_has_path(state->filmed)) {
+        adcgs_play_say(state, "the stream stores no filmed path");
+        return;
+    }
+    if (state->filmed->following && !state->filmed->beside) {
+        state->filmed->following = 0;
+        adcgs_play_say(state, "the view stays here");
+        return;
+    }
+    follow(state);
+    adcgs_play_say(state, "the view follows the filmed path");
+}
+
+static void do_limit(adcgs_play_state *state, int unused)
+{
+    if (!state->filmed)
+        return;
+    state->filmed->unlimited = !state->filmed->unlimited;
+    adcgs_play_say(state, state->filmed->unlimited ? "no limit: leave the filmed region" : "the view stays where it was filmed");
+}
+
 static void do_reset(adcgs_play_state *state, int unused)
 {
-    place_camera(state, -1, &state->home);
+    if (state->follows_home)
+        follow(state);
+    else
+        place_camera(state, -1, &state->home);
 }
 
 static void do_fly(adcgs_play_state *state, int unused)
 {
     state->flying = !state->flying;
+    if (state->flying && state->filmed)
+        state->filmed->following = 0;
     state->held = 0;
     state->drag = ADCGS_DRAG_NONE;
     if (!state->flying)
@@ -164,6 +204,8 @@ static const struct action {
     {ADCGS_KEY_PAGE_UP, 1, do_next, -1},
     {ADCGS_KEY_PAGE_DOWN, 1, do_next, 1},
     {'r', 0, do_reset, 0},
+    {'c', 0, do_follow, 0},
+    {'x', 0, do_limit, 0},
     {'f', 0, do_fly, 0},
     {'p', 0, do_shot, 0},
     {'i', 0, do_statistics, 0},
@@ -179,24 +221,24 @@ static const struct action {
 
 static const adcgs_play_help help_lines[] = {
     {"left drag", "orbit around the scene", 0},
+    {"2 clicks", "orbit around this", 0},
     {"right drag", "pan; also shift and drag", 0},
     {"wheel", "zoom", 0},
     {"click", "buttons; drag the time bar", 1},
     {"f", "fly: w a s d q e, mouse looks", 0},
     {"r", "first view", 0},
-    {"0 .. 9", "a stored camera", 0},
-    {"[ ]", "previous or next stored camera", 0},
+    {"c", "follow the film, stay", 0},
+    {"x", "limit on, off", 0},
+    {"0 .. 9 [ ]", "stored cameras", 0},
     {"space", "play, pause", 0},
     {"left right", "previous or next frame", 0},
     {"home end", "first frame, last frame", 0},
-    {", .", "slower, faster", 0},
-    {"l", "loop", 0},
+    {", . l", "slower, faster, loop", 0},
     {"- +", "fewer layers, more layers", 0},
     {"p", "screenshot; with shift EXR", 0},
     {"k", "key frame; shift: undo it", 1},
     {"v", "video: begin, end", 1},
-    {"i", "statistics", 0},
-    {"b", "time bar and buttons", 0},
+    {"i b", "statistics, time bar", 0},
     {"F11", "full screen", 1},
     {"h F1", "this page", 0},
     {"escape q", "quit", 1},

@@ -5,6 +5,7 @@
 #include "play/overlay.h"
 
 #include "cli/text.h"
+#include "play/by_hand.h"
 #include "play/control_bar.h"
 #include "play/controls.h"
 #include "play/help_page.h"
@@ -14,6 +15,7 @@
 
 #define MESSAGE_LINES 6
 #define HINT "h for help"
+#define OUTSIDE_ALPHA 128.0 /* of black at the limit of the filmed region, of 255 */
 
 /** The longest beginning of a text that fits, cut after a space if there is one. \return its bytes */
 static size_t fitting_bytes(const adcgs_type *type, const char *text, int size, int width)
@@ -109,6 +111,25 @@ static void draw_message(adcgs_drawing *d, const adcgs_play_state *state, const 
         draw_text(d, state, text, 0.0, 1.0, bottom);
 }
 
+/** The image is darker outside of the filmed region, and black next to the filmed view. */
+static void draw_limits(adcgs_drawing *d, const adcgs_play_state *state)
+{
+    const int w = state->width, h = state->height;
+    const uint32_t dark = (uint32_t)(OUTSIDE_ALPHA * adcgs_play_outside(state));
+    const int x = (int)(w * adcgs_orbit_control_inset(&state->control, w, h, 0));
+    const int y = (int)(h * adcgs_orbit_control_inset(&state->control, w, h, 1));
+    if (dark)
+        adcgs_drawing_rect(d, (adcgs_rect){0, 0, w, h}, dark);
+    if (x) {
+        adcgs_drawing_rect(d, (adcgs_rect){0, 0, x, h}, ADCGS_COLOUR_BESIDE);
+        adcgs_drawing_rect(d, (adcgs_rect){w - x, 0, x, h}, ADCGS_COLOUR_BESIDE);
+    }
+    if (y) {
+        adcgs_drawing_rect(d, (adcgs_rect){0, 0, w, y}, ADCGS_COLOUR_BESIDE);
+        adcgs_drawing_rect(d, (adcgs_rect){0, h - y, w, y}, ADCGS_COLOUR_BESIDE);
+    }
+}
+
 int adcgs_overlay_hints(const adcgs_play_state *state)
 {
     return state->now < state->hint_end && !state->help;
@@ -120,6 +141,7 @@ void adcgs_overlay_draw(adcgs_drawing *d, const adcgs_type *type, const adcgs_pl
     adcgs_controls controls;
     adcgs_controls_place(&controls, state);
     adcgs_drawing_init(d, type);
+    draw_limits(d, state);
     if (state->help) { /* alone: in a small window it covers the rest */
         adcgs_help_page_draw(d, state);
         return;

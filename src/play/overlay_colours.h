@@ -4,8 +4,9 @@
 #define ADCGS_PLAY_OVERLAY_COLOURS_H
 
 #define ADCGS_COLOUR_BACK 0x000000a8u
-#define ADCGS_COLOUR_PAGE 0x000000e0u  /* behind the help, which covers other text */
-#define ADCGS_COLOUR_SHADE 0x00000070u /* on the image around the help */
+#define ADCGS_COLOUR_PAGE 0x000000e0u   /* behind the help, which covers other text */
+#define ADCGS_COLOUR_SHADE 0x00000070u  /* on the image around the help */
+#define ADCGS_COLOUR_BESIDE 0x000000ffu /* next to the filmed view */
 #define ADCGS_COLOUR_TEXT 0xffffffffu
 #define ADCGS_COLOUR_KEY 0x9fd2ffffu
 #define ADCGS_COLOUR_FAINT 0xffffffa0u

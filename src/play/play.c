@@ -144,7 +144,7 @@ static void init(adcgs_player *p, const adcgs_play_settings *s)
 {
     *p = (adcgs_player){.settings = s, .least_divider = 1, .last_frame = -1, .stale = 1};
     adcgs_play_clock *const clock = &p->state.clock;
-    adcgs_play_init(&p->state, &s->info, &s->home, s->cameras);
+    adcgs_play_init(&p->state, &s->info, &s->home, s->cameras, s->filmed);
     adcgs_play_scale_init(&p->scale, s->info.tiers);
     if (s->config.layers)
         p->state.layers = ADCGS_MIN(s->config.layers, p->state.layers_max);

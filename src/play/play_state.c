@@ -5,6 +5,7 @@
 #include "play/play_state.h"
 
 #include "play/actions.h"
+#include "play/by_hand.h"
 #include "play/controls.h"
 
 #include <math.h>
@@ -13,15 +14,29 @@
 #define SPEED_STEP 1.25
 #define SPEED_MIN 0.01 /* scene units per second */
 #define SPEED_MAX 100.0
-#define SHIFT_SPEED 4.0 /* factor of the speed with shift */
-#define STILL_AFTER 0.2 /* seconds without a movement after which the image counts as still */
+#define SHIFT_SPEED 4.0    /* factor of the speed with shift */
+#define DOUBLE_SECONDS 0.4 /* between the two clicks of a double click, at most: the usual limit of desktops */
+#define DOUBLE_PIXELS 16.0 /* between them, pixels of a desktop of usual density: fingers are not steadier */
+#define POSE_WITHIN 1e-6   /* of elements of poses: paths are stored in binary32 */
+#define STILL_AFTER 0.2    /* seconds without a movement after which the image counts as still */
 #define HINT_SECONDS 8.0
 
-void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *stored)
+/** Equal except for rounding. */
+static int same_pose(const double a[12], const double b[12])
+{
+    for (int i = 0; i < 12; i++)
+        if (!(fabs(a[i] - b[i]) <= POSE_WITHIN * (1 + fabs(b[i]))))
+            return 0;
+    return 1;
+}
+
+void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcgs_camera *home, const adcgs_filmed_camera *stored,
+                     adcgs_filmed_view *filmed)
 {
     *state = (adcgs_play_state){
         .home = *home,
         .stored = stored,
+        .filmed = filmed,
         .cameras = info->cameras,
         .jumped = -1,
         .layers = info->layers,
@@ -33,9 +48,19 @@ void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcg
         .bar = 1,
         .moved = -STILL_AFTER,
         .pointer = {-1.0, -1.0},
+        .click = {.time = -DOUBLE_SECONDS},
     };
     adcgs_orbit_control_init(&state->control, info, home);
     adcgs_play_clock_init(&state->clock, info->time_start, info->time_end, info->frame_rate, 0.0);
+    if (filmed && adcgs_filmed_view_has_path(filmed)) {
+        adcgs_filmed_view_start(filmed, &state->control, info->time_start);
+        state->follows_home = same_pose(state->control.camera.cam_to_world, home->cam_to_world);
+        if (!state->follows_home) {
+            filmed->following = 0;
+            adcgs_orbit_control_jump(&state->control, home);
+        }
+    }
+    adcgs_play_placed(state);
 }
 
 void adcgs_play_resize(adcgs_play_state *state, int width, int height, double density)
@@ -58,13 +83,6 @@ adcgs_play_control adcgs_play_pointed(const adcgs_play_state *state)
 }
 
 /* ---- Keys. ---- */
-
-static void move_by_hand(adcgs_play_state *state)
-{
-    state->moved = state->now;
-    state->jumped = -1;
-    *state->control.camera.name = 0; /* it is no longer the stored camera */
-}
 
 /* Keys that fly while they are held, with the direction in the camera's axes. */
 static const struct {
@@ -131,6 +149,28 @@ static void release(adcgs_play_state *state)
         adcgs_play_act(state, adcgs_controls_key(control), 0);
 }
 
+/** True for a double click: the window counts clicks, or else it is the second one at its place within a short time. */
+static int is_double(adcgs_play_state *state, const adcgs_event *event)
+{
+    if (event->clicks)
+        return event->clicks == 2;
+    const double near = DOUBLE_PIXELS * state->density;
+    const int second = state->now - state->click.time <= DOUBLE_SECONDS && fabs(event->x - state->click.x) <= near &&
+                       fabs(event->y - state->click.y) <= near;
+    state->click.time = second ? -DOUBLE_SECONDS : state->now;
+    state->click.x = event->x;
+    state->click.y = event->y;
+    return second;
+}
+
+/** The centre of an orbit is in the middle of the image, until the user sets another one. */
+static void begin_orbit(adcgs_play_state *state)
+{
+    state->drag = ADCGS_DRAG_ORBIT;
+    if (!state->pivot_chosen && state->filmed && state->filmed->following && !state->filmed->beside)
+        adcgs_play_request_pivot(state, 0.5, 0.5);
+}
+
 /** Controls that rest are not pressed: the user does not see them. */
 static void on_button(adcgs_play_state *state, const adcgs_event *event)
 {
@@ -147,14 +187,12 @@ static void on_button(adcgs_play_state *state, const adcgs_event *event)
         state->help = 0; /* a press closes it, and has no other effect */
     else if (event->button == 1 && control != ADCGS_CONTROL_NONE)
         press(state, control, event->x);
-    else if (event->button == 1 && !state->shift) {
-        state->drag = ADCGS_DRAG_ORBIT;
-        if (event->clicks == 2) {
-            state->pivot = 1;
-            state->pivot_at[0] = event->x;
-            state->pivot_at[1] = event->y;
-        }
-    } else
+    else if (event->button == 1 && !state->shift && is_double(state, event)) {
+        state->pivot_chosen = 1;
+        adcgs_play_request_pivot(state, event->x / state->width, event->y / state->height);
+    } else if (event->button == 1 && !state->shift)
+        begin_orbit(state);
+    else
         state->drag = ADCGS_DRAG_PAN;
 }
 
@@ -168,14 +206,14 @@ static void on_motion(adcgs_play_state *state, const adcgs_event *event)
         scrub(state, event->x);
     if (state->drag == ADCGS_DRAG_BAR || (!state->flying && state->drag == ADCGS_DRAG_NONE))
         return;
-    move_by_hand(state);
+    state->click.time = -DOUBLE_SECONDS; /* a drag is no click */
     if (state->flying)
-        adcgs_orbit_control_look(&state->control, turn * event->dx, turn * event->dy);
+        adcgs_play_move(state, adcgs_hand_look, turn * event->dx, turn * event->dy, 0);
     else if (state->drag == ADCGS_DRAG_ORBIT)
-        adcgs_orbit_control_orbit(&state->control, turn * event->dx, turn * event->dy);
+        adcgs_play_move(state, adcgs_hand_orbit, turn * event->dx, turn * event->dy, 0);
     else {
         adcgs_orbit_control_view(&state->control, state->width, state->height, &view);
-        adcgs_orbit_control_pan(&state->control, event->dx / view.fx, event->dy / view.fy);
+        adcgs_play_move(state, adcgs_hand_pan, event->dx / view.fx, event->dy / view.fy, 0);
     }
 }
 
@@ -186,8 +224,7 @@ static void on_wheel(adcgs_play_state *state, const adcgs_event *event)
         adcgs_play_say(state, "flying speed %.2f per second", state->speed);
         return;
     }
-    move_by_hand(state);
-    adcgs_orbit_control_zoom(&state->control, event->dy);
+    adcgs_play_move(state, adcgs_hand_zoom, event->dy, 0, 0);
 }
 
 void adcgs_play_event(adcgs_play_state *state, const adcgs_event *event)
@@ -240,8 +277,8 @@ void adcgs_play_tick(adcgs_play_state *state, double now)
             by[1] += way * flights[i].down;
             by[2] += way * flights[i].forward;
         }
-    if (state->held) {
-        move_by_hand(state);
-        adcgs_orbit_control_fly(&state->control, by[0], by[1], by[2]);
-    }
+    if (state->filmed)
+        adcgs_filmed_view_tick(state->filmed, &state->control, adcgs_play_clock_time(&state->clock));
+    if (state->held)
+        adcgs_play_move(state, adcgs_hand_fly, by[0], by[1], by[2]);
 }

@@ -9,6 +9,7 @@
 #include "base/base.h"
 #include "camera/orbit_control.h"
 #include "play/event.h"
+#include "play/filmed_view.h"
 #include "play/play_clock.h"
 
 typedef enum adcgs_play_drag { ADCGS_DRAG_NONE, ADCGS_DRAG_ORBIT, ADCGS_DRAG_PAN, ADCGS_DRAG_BAR } adcgs_play_drag;
@@ -33,8 +34,10 @@ typedef enum adcgs_play_control {
 typedef struct adcgs_play_state {
     adcgs_orbit_control control;
     adcgs_play_clock clock;
-    adcgs_camera home;          /**< the view of reset */
-    const adcgs_camera *stored; /**< the stream's cameras, [cameras] */
+    adcgs_camera home;                 /**< the view of reset */
+    int follows_home;                  /**< nonzero: reset follows the filmed path instead */
+    const adcgs_filmed_camera *stored; /**< the stream's cameras, [cameras] */
+    adcgs_filmed_view *filmed;         /**< the filmed path and region; NULL: unknown */
     int cameras;
     int jumped;             /**< the last selected stored camera; -1: none, or moved since */
     int layers, layers_max; /**< of the stream: used, and present; 1..5 */
@@ -46,7 +49,14 @@ typedef struct adcgs_play_state {
     unsigned held; /**< flight keys that are held, a bit for each */
     int shift;
     adcgs_play_drag drag;
-    double moved; /**< when the user last moved the camera or the time */
+    int pivots;         /**< number of requests for a pivot so far: for each, adcgs_play_pivot() may be called (by_hand.h) */
+    int pivot_answered; /**< number of the last one that has its answer */
+    int pivot_chosen;   /**< nonzero: the user chose the pivot by a double click */
+    double pivot_at[2]; /**< requested place: 0 to 1 over width and height of the window */
+    double moved;       /**< when the user last moved the camera or the time */
+    struct {
+        double time, x, y;
+    } click; /**< the last click of the first button on the image */
 
     double pointer[2]; /**< position of the pointer; negative: it is outside the window */
     double pointed;    /**< when it last moved or pressed */
@@ -59,8 +69,6 @@ typedef struct adcgs_play_state {
 
     adcgs_play_shot shot; /**< requested screenshot; reset when it is taken */
     int key_frame;        /**< request: 1 to add a key frame, -1 to remove the last; reset when it is done */
-    int pivot;            /**< request: a double click asks to turn about the point at pivot_at of the window */
-    double pivot_at[2];   /**< pixels */
     int record;           /**< a video is recorded */
     long recorded;        /**< its frames so far */
     int full;             /**< full screen is requested */
@@ -69,8 +77,12 @@ typedef struct adcgs_play_state {
     double now; /**< wall clock at the last tick */
 } adcgs_play_state;
 
-/** Starts at the home camera, paused at the first frame. stored must live as long as the state. */
-void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *stored);
+/**
+ * Starts at the home camera, or following the filmed path if it is the view of its first time; paused at the first frame. stored
+ * and filmed must live as long as the state.
+ */
+void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcgs_camera *home, const adcgs_filmed_camera *stored,
+                     adcgs_filmed_view *filmed);
 void adcgs_play_resize(adcgs_play_state *state, int width, int height, double density);
 /** Applies an event. */
 void adcgs_play_event(adcgs_play_state *state, const adcgs_event *event);

@@ -6,6 +6,7 @@
 
 #include "camera/rotation.h"
 #include "play/actions.h"
+#include "play/by_hand.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -102,6 +103,9 @@ static adcgs_play_job wanted_job(const adcgs_player *p, int divider)
     const int films = records(p), width = films ? p->recording.width : state->width;
     adcgs_orbit_control_view(&state->control, width, films ? p->recording.height : state->height, &job.camera);
     job.tiers = adcgs_play_moving(state) && !shoots(p) && !films ? p->scale.tiers : p->scale.all;
+    if (p->pivots != state->pivots && p->come.drawable && !films)
+        job.pivot = state->pivots;
+    memcpy(job.pivot_at, state->pivot_at, sizeof job.pivot_at);
     if (divider > 1)
         adcgs_camera_stretch(&job.camera, (state->width + divider - 1) / divider, (state->height + divider - 1) / divider);
     return job;
@@ -126,7 +130,7 @@ int adcgs_player_settled(const adcgs_player *p)
 {
     const adcgs_play_job wanted = wanted_job(p, wanted_divider(p));
     const int has_all = p->pictures > 0 || !p->settings->source.feed;
-    const int waits = p->drawing || *p->shot || p->state.shot || p->state.record || adcgs_play_moving(&p->state);
+    const int waits = p->drawing || wanted.pivot || *p->shot || p->state.shot || p->state.record || adcgs_play_moving(&p->state);
     return !waits && same_picture(&p->job, &wanted) && has_all && !lags(p);
 }
 
@@ -141,7 +145,7 @@ void adcgs_player_post(adcgs_player *p)
 {
     const int shot = shoots(p), films = records(p);
     adcgs_play_job job = wanted_job(p, shot ? 1 : wanted_divider(p));
-    const int same = !shot && !films && same_picture(&job, &p->job);
+    const int same = !shot && !films && !job.pivot && same_picture(&job, &p->job);
     if (p->drawing || (same && !lags(p)) || (films && !adcgs_recording_due(&p->recording)))
         return;
     job.sink = films ? p->recording.sink : NULL;
@@ -149,6 +153,8 @@ void adcgs_player_post(adcgs_player *p)
     if (shot)
         memcpy(job.path, p->shot, sizeof job.path);
     p->drawing = adcgs_worker_post(p->worker, &job);
+    if (p->drawing && job.pivot)
+        p->pivots = job.pivot;
     if (p->drawing && films)
         adcgs_recording_posted(&p->recording);
     if (p->drawing && !shot)
@@ -241,6 +247,8 @@ adcgs_status adcgs_player_collect(adcgs_player *p, adcgs_error *error)
     p->drawing = 0;
     if (p->settings->source.feed)
         take_come(p, &result->come);
+    if (result->has_pivot)
+        adcgs_play_pivot(&p->state, result->job.pivot, result->pivot);
     const int shows = !result->job.sink || take_frame(p, result);
     if (!shows)
         p->job.camera.width = 0; /* renders it again, for the window alone */

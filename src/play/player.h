@@ -40,6 +40,7 @@ typedef struct adcgs_player {
     adcgs_key_frames keys; /**< set by the user */
     adcgs_recording recording;
     int last_frame;        /**< the last frame shown while playing; -1: none */
+    int pivots;            /**< number of the last request for a pivot that the worker got */
     int seeks, last_seeks; /**< number of events that changed the frame: now, and when that frame was posted */
     int stale;             /**< the window's contents are not up to date */
     double shown;          /**< when the window was last rendered */

@@ -5,6 +5,7 @@
 #include "play/script_run.h"
 
 #include "io/image.h"
+#include "play/by_hand.h"
 #include "play/controls.h"
 
 #include <math.h>
@@ -133,6 +134,8 @@ static int find_value(const adcgs_player *p, const char *name, double *value)
         {"layers", s->layers},
         {"camera", s->jumped},
         {"flying", s->flying},
+        {"following", s->filmed && s->filmed->following},
+        {"outside", adcgs_play_outside(s)},
         {"help", s->help},
         {"statistics", s->statistics},
         {"bar", s->bar},

@@ -4,6 +4,7 @@
 
 #include "play/worker.h"
 
+#include "camera/pivot.h"
 #include "io/image.h"
 
 #include <adcgs/decoder.h>
@@ -90,6 +91,9 @@ static adcgs_status draw(adcgs_worker *w, adcgs_decoder *decoder)
     for (uint32_t i = 0; i < splats.n; i++)
         r->splats += splats.opacity[i] > 0;
     r->rgb = w->rgb;
+    if (r->job.pivot) /* without an answer the old pivot remains */
+        r->has_pivot =
+            adcgs_pivot_find(r->pivot, decoder, camera, r->job.time, r->job.pivot_at[0], r->job.pivot_at[1], NULL) == ADCGS_OK;
     if (r->job.sink)
         ADCGS_TRY(adcgs_sink_write(r->job.sink, &frame, r->job.number, &r->error));
     const adcgs_image image = {.width = frame.width, .height = frame.height, .channels = 3, .data = frame.rgb};

@@ -20,6 +20,8 @@ typedef struct adcgs_play_job {
     int divider;         /**< of the window's resolution; not used by the worker */
     int number;          /**< of the frame in the stream; not used by the worker */
     int seeks;           /**< number of the user's jumps to other frames; not used by the worker */
+    int pivot;           /**< number of a request for a pivot (adcgs_play_pivot()); 0: none */
+    double pivot_at[2];  /**< its place: 0 to 1 over width and height */
     int again;           /**< of an arriving stream: the same image as before, rendered only if it has changed */
     adcgs_sink *sink;    /**< video output of the image; NULL: none */
     char path[PATH_MAX]; /**< file output of the image; "": none */
@@ -31,6 +33,8 @@ typedef struct adcgs_play_result {
     adcgs_error error;  /**< the reason why there is no image */
     double seconds;     /**< render time */
     uint32_t splats;    /**< rendered splats */
+    int has_pivot;      /**< nonzero: pivot is the answer to the request */
+    double pivot[3];    /**< world units */
     const uint8_t *rgb; /**< [height][width][3], of the camera's size; NULL without a failure: the image has not changed */
     adcgs_come come;    /**< decoded part of an arriving stream */
 } adcgs_play_result;

@@ -264,7 +264,7 @@ static adcgs_status place_times(settings *s, const adcgs_decoder *decoder, adcgs
 }
 
 /** Writes the stored cameras as a path, or a path as another file. */
-static adcgs_status write_cameras(const settings *s, const adcgs_decoder *decoder, adcgs_error *error)
+static adcgs_status write_cameras(const settings *s, adcgs_decoder *decoder, adcgs_error *error)
 {
     adcgs_camera_path frames;
     if (!s->request.camera)

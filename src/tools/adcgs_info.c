@@ -172,16 +172,26 @@ static adcgs_status print_segments(const adcgs_info_report *r, adcgs_error *erro
     return ADCGS_OK;
 }
 
+static void print_time(const adcgs_stored_camera *c)
+{
+    if (!isnan(c->time))
+        printf(", time %g s", c->time);
+    if (c->path >= 0)
+        printf(", path %d", c->path);
+    putchar('\n');
+}
+
 static void print_extras(const adcgs_info_report *r)
 {
     if (r->stream.n_cameras > 0)
         printf("\ncameras\n");
     for (uint32_t i = 0; i < r->stream.n_cameras; i++) {
-        const adcgs_camera *c = &r->stream.cameras[i];
+        const adcgs_camera *c = &r->stream.cameras[i].camera;
         printf("  %u ", i);
         adcgs_text_show(stdout, c->name);
-        printf(" %dx%d, focal %g %g, centre %g %g, at %g %g %g\n", (int)c->width, (int)c->height, c->fx, c->fy, c->cx, c->cy,
+        printf(" %dx%d, focal %g %g, centre %g %g, at %g %g %g", (int)c->width, (int)c->height, c->fx, c->fy, c->cx, c->cy,
                c->cam_to_world[3], c->cam_to_world[7], c->cam_to_world[11]);
+        print_time(&r->stream.cameras[i]);
     }
     if (r->stream.n_meta > 0)
         printf("\nmetadata\n");

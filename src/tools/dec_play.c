@@ -19,8 +19,8 @@
 #define STREAM_BYTES_MAX ((uint64_t)1 << 32) /* the player keeps the bytes to open the stream with other layers */
 
 /** Collects the stream's properties for the player. The caller frees the cameras. */
-static adcgs_status collect_properties(const adcgs_dec_play *how, const adcgs_decoder *decoder, adcgs_play_settings *settings,
-                                       adcgs_camera **cameras, adcgs_error *error)
+static adcgs_status collect_properties(const adcgs_dec_play *how, adcgs_decoder *decoder, adcgs_play_settings *settings,
+                                       adcgs_filmed_camera **cameras, adcgs_error *error)
 {
     adcgs_info *const info = &settings->info;
     adcgs_camera_path_request request = how->request;
@@ -30,8 +30,7 @@ static adcgs_status collect_properties(const adcgs_dec_play *how, const adcgs_de
     *cameras = calloc((size_t)info->cameras + 1, sizeof **cameras);
     if (!*cameras)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory for %d cameras", how->input, info->cameras);
-    for (int i = 0; i < info->cameras; i++)
-        ADCGS_TRY(adcgs_get_camera(decoder, i, &(*cameras)[i], error));
+    ADCGS_TRY(adcgs_filmed_cameras_get(*cameras, decoder, info, error));
     /* The first view is the camera of a single frame; the window keeps its shape, so the view is not stretched to a size. */
     request.has_times = 1;
     request.begin = request.end = info->time_start;
@@ -40,7 +39,7 @@ static adcgs_status collect_properties(const adcgs_dec_play *how, const adcgs_de
     settings->home = frames.frame[0].camera;
     adcgs_camera_path_free(&frames);
     settings->cameras = *cameras;
-    return ADCGS_OK;
+    return adcgs_filmed_view_init(settings->filmed, info, *cameras, &settings->home, error);
 }
 
 static void set_times(const adcgs_camera_path_request *request, adcgs_play_settings *settings)
@@ -103,7 +102,9 @@ static adcgs_status open_front(adcgs_decoder **decoder, const adcgs_play_source 
 static adcgs_status play(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
 {
     adcgs_decoder *decoder = NULL;
-    adcgs_camera *cameras = NULL;
+    adcgs_filmed_camera *cameras = NULL;
+    adcgs_filmed_view filmed = {.following = 0};
+    settings->filmed = &filmed;
     adcgs_status status = open_front(&decoder, &settings->source, &settings->config, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = collect_properties(how, decoder, settings, &cameras, error);
@@ -111,6 +112,7 @@ static adcgs_status play(const adcgs_dec_play *how, adcgs_play_settings *setting
     set_times(&how->request, settings);
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = adcgs_play_run(settings, failed, error);
+    adcgs_filmed_view_clear(&filmed);
     free(cameras);
     return status;
 }

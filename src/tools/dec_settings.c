@@ -59,13 +59,13 @@ static void add_video_options(adcgs_option_table *out, adcgs_dec_settings *s)
 /** Options for cameras, times and sizes: the shown part. */
 static void add_view_options(adcgs_option_table *out, adcgs_dec_settings *s)
 {
-    static const char *const ways[] = {"orbit", "spiral", "bullet", NULL};
+    static const char *const ways[] = {"follow", "orbit", "spiral", "bullet", NULL};
     const adcgs_option table[] = {
         {"beside", 0, ADCGS_OPTION_FILE, &s->beside, 0, 0, "OTHER",
          "other stream, shown to the right through the same cameras at\nthe same times", NULL, NULL},
         {"camera", 'c', ADCGS_OPTION_FILE, &s->request.camera, 0, 0, "WHICH",
-         "name or index of a stored camera, orbit, spiral, bullet, or a\n"
-         "path (.json, .chan, .usda) (default: camera 0, or orbit if\nnone is stored)",
+         "name or index of a stored camera, follow, orbit, spiral,\n"
+         "bullet, or a path (.json, .chan, .usda) (default: follow, else\ncamera 0, or orbit if none is stored)",
          ways, NULL},
         {"cameras", 0, ADCGS_OPTION_FILE, &s->cameras, 0, 0, "PATH",
          "file for the stored cameras, or for the path of --camera, as\nPATH.json, .chan or .usda; nothing else is written", NULL,

@@ -7,6 +7,8 @@
 #include "io/json.h"
 #include "model/model_priv.h"
 
+#include <math.h>
+
 static void json_header(adcgs_json *j, const adcgs_info_report *r)
 {
     const adcgs_info *i = &r->info;
@@ -89,11 +91,15 @@ static void json_extras(adcgs_json *j, const adcgs_info_report *r)
 {
     adcgs_json_open(j, "cameras", '[');
     for (uint32_t i = 0; i < r->stream.n_cameras; i++) {
-        const adcgs_camera *c = &r->stream.cameras[i];
+        const adcgs_camera *c = &r->stream.cameras[i].camera;
         adcgs_json_open(j, NULL, '{');
         adcgs_json_string(j, "name", c->name);
         adcgs_json_int(j, "width", c->width);
         adcgs_json_int(j, "height", c->height);
+        if (!isnan(r->stream.cameras[i].time))
+            adcgs_json_real(j, "time", r->stream.cameras[i].time);
+        if (r->stream.cameras[i].path >= 0)
+            adcgs_json_int(j, "path", r->stream.cameras[i].path);
         adcgs_json_close(j);
     }
     adcgs_json_close(j);

@@ -22,7 +22,7 @@
 static const int qualities[] = {80, 70, 60, 50, 40, 30};
 
 /** The camera of the page's first view, at the poster's size. */
-static adcgs_status make_view(adcgs_camera *camera, const adcgs_share_scene *scene, const adcgs_decoder *decoder, double time,
+static adcgs_status make_view(adcgs_camera *camera, const adcgs_share_scene *scene, adcgs_decoder *decoder, double time,
                               adcgs_error *error)
 {
     adcgs_camera_path path;

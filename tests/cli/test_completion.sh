@@ -34,7 +34,7 @@ wants "adcgs-dec --ca" "--camera|--cameras"
 wants "adcgs-dec film.adcgs --cpu a" "auto|avx2|avx512"
 wants "adcgs-dec film.adcgs --cpu=av" "avx2|avx512"
 wants "adcgs-dec film.adcgs -c or" "orbit"
-wants "adcgs-dec film.adcgs --camera f" "film two.adcgs|film.adcgs|folder"
+wants "adcgs-dec film.adcgs --camera f" "film two.adcgs|film.adcgs|folder|follow"
 wants "adcgs-dec film.adcgs --output n" "notes.txt"
 wants "adcgs-dec film.adcgs --output=n" "notes.txt"
 wants "adcgs-dec film.adcgs --threads " ""
@@ -85,7 +85,7 @@ if command -v zsh >/dev/null; then
 auto|avx2|avx512|adcgs-dec film.adcgs --cpu a
 avx2|avx512|adcgs-dec film.adcgs --cpu=av
 orbit|adcgs-dec film.adcgs -c or
-film.adcgs|folder|adcgs-dec film.adcgs --camera f
+film.adcgs|folder|follow|adcgs-dec film.adcgs --camera f
 notes.txt|adcgs-dec film.adcgs --output n
 notes.txt|adcgs-dec film.adcgs --output=n
 |adcgs-dec film.adcgs --threads 

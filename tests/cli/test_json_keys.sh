@@ -56,6 +56,13 @@ expect 0 "" ./adcgs-dec "$dir/s.adcgs" --cameras "$dir/stored.json"
 expect 0 "" ./adcgs-dec "$dir/s.adcgs" --camera "$dir/stored.json" --cameras "$dir/flight.json"
 for name in stored flight; do sample "camera path" "$dir/$name.json"; done
 
+# A film, whose stream has a path.
+./adcgs-demo-scene --scene film-cross20 --size 32x24 --frames 8 -o "$dir/shots" -q &&
+    # shellcheck disable=SC2086
+    ./adcgs-enc "$dir/shots" -o "$dir/f.adcgs" $draft --iterations 10 -q || bad "a film"
+printed info-film ./adcgs-info --json "$dir/f.adcgs"
+sample adcgs-info "$dir/info-film.json"
+
 # Live footage that is complete, and a stream that continues.
 scene_file "$dir/live" images
 put "$dir/live" 0 1 2 3 4 5

@@ -279,7 +279,7 @@ key v
 wait 1 frames
 key q
 END
-    $dec "$dir/s.adcgs" -o "$dir/wanted.y4m" --size 128x96 --threads 2 2>/dev/null
+    $dec "$dir/s.adcgs" -o "$dir/wanted.y4m" --size 128x96 --fill --threads 2 2>/dev/null
     bytes=$((($(tail -c "+$(($(head -n 1 "$dir/wanted.y4m" | wc -c) + 1))" "$dir/wanted.y4m" | wc -c)) / 8 - 6))
     [ "$(frames "$dir/film.y4m" $bytes)" = "$(frames "$dir/wanted.y4m" $bytes)" ] || bad "the video's frames, on $where"
     [ "$(frames "$dir/still.y4m" $bytes | wc -l)" -eq 1 ] || bad "the still video, on $where"

@@ -163,7 +163,7 @@ shows()
 {
     picture=$1
     shift
-    $dec "$s" -o "$dir/wanted.png" --camera 0 --size 128x96 --quiet "$@" || bad "adcgs-dec $*"
+    $dec "$s" -o "$dir/wanted.png" --camera 0 --size 128x96 --fill --quiet "$@" || bad "adcgs-dec $*"
     same "$picture" wanted.png
 }
 play() { begin "$dec" "$@" --play --script script --size 128x96 --camera 0 --threads 2; }

@@ -36,10 +36,13 @@ static inline void check_equal(const adcgs_stream *a, const adcgs_stream *b)
             fail_msg("segment %u: %s", i, error.text);
     assert_int_equal(a->n_cameras, b->n_cameras);
     for (uint32_t i = 0; i < a->n_cameras; i++) {
-        assert_string_equal(a->cameras[i].name, b->cameras[i].name);
-        assert_int_equal(a->cameras[i].width, b->cameras[i].width);
-        assert_true(a->cameras[i].fx == b->cameras[i].fx && a->cameras[i].near_plane == b->cameras[i].near_plane);
-        assert_memory_equal(a->cameras[i].cam_to_world, b->cameras[i].cam_to_world, sizeof a->cameras[i].cam_to_world);
+        const adcgs_camera *const c = &a->cameras[i].camera, *const d = &b->cameras[i].camera;
+        assert_string_equal(c->name, d->name);
+        assert_int_equal(c->width, d->width);
+        assert_true(c->fx == d->fx && c->near_plane == d->near_plane);
+        assert_memory_equal(c->cam_to_world, d->cam_to_world, sizeof c->cam_to_world);
+        assert_int_equal(a->cameras[i].path, b->cameras[i].path);
+        assert_true(a->cameras[i].path < 0 || a->cameras[i].time == b->cameras[i].time);
     }
     assert_int_equal(a->n_meta, b->n_meta);
     for (uint32_t i = 0; i < a->n_meta; i++) {

@@ -35,7 +35,7 @@ static void click(adcgs_play_state *play, adcgs_play_control control)
 /** A click has the effect of a key. It needs press and release on the same button, and never moves the camera. */
 static void test_presses(void **state)
 {
-    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_filmed_camera cameras[2] = TWO_CAMERAS;
     adcgs_play_state play = make_state(cameras);
     const adcgs_orbit_control before = play.control;
     click(&play, ADCGS_CONTROL_PLAY);
@@ -68,7 +68,7 @@ static void test_presses(void **state)
 
 static void test_scrub(void **state)
 {
-    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_filmed_camera cameras[2] = TWO_CAMERAS;
     adcgs_play_state play = make_state(cameras);
     const adcgs_orbit_control before = play.control;
     const adcgs_rect bar = place_of(&play, ADCGS_CONTROL_SLIDER);
@@ -90,7 +90,7 @@ static void test_scrub(void **state)
 /** While playing, the controls rest three seconds after the last movement of the pointer. Resting controls are not pressed. */
 static void test_rest(void **state)
 {
-    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_filmed_camera cameras[2] = TWO_CAMERAS;
     adcgs_play_state play = make_state(cameras);
     const adcgs_rect r = place_of(&play, ADCGS_CONTROL_HELP), slider = place_of(&play, ADCGS_CONTROL_SLIDER);
     adcgs_play_tick(&play, 59.0);
@@ -113,7 +113,7 @@ static void test_rest(void **state)
 
 static void test_pointed(void **state)
 {
-    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_filmed_camera cameras[2] = TWO_CAMERAS;
     adcgs_play_state play = make_state(cameras);
     adcgs_drawing *const drawing = malloc(sizeof *drawing);
     assert_int_equal(adcgs_play_pointed(&play), ADCGS_CONTROL_NONE);
@@ -144,7 +144,7 @@ static int meet(const adcgs_rect *a, const adcgs_rect *b)
 /** In a window of any size controls are inside, apart from each other, and large enough to press. */
 static void test_places(void **state)
 {
-    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_filmed_camera cameras[2] = TWO_CAMERAS;
     adcgs_play_state play = make_state(cameras);
     for (int width = 64; width < 4200; width += 37)
         for (int height = 64; height < 2400; height += 53) {
@@ -170,7 +170,7 @@ static void test_places(void **state)
 
 static void test_sizes(void **state)
 {
-    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_filmed_camera cameras[2] = TWO_CAMERAS;
     adcgs_play_state play = make_state(cameras);
     const struct {
         int width, height;
@@ -207,7 +207,7 @@ static int has_text(const adcgs_drawing *d, const char *text)
 static void test_overlay(void **state)
 {
     static const adcgs_type wide = {.width = wide_letters};
-    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_filmed_camera cameras[2] = TWO_CAMERAS;
     adcgs_play_state play = make_state(cameras);
     adcgs_drawing *const drawing = malloc(sizeof *drawing);
     int n;
@@ -237,7 +237,7 @@ static void test_overlay(void **state)
 /** The hint is there until the first key, or some seconds; the message for some seconds. */
 static void test_hint(void **state)
 {
-    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_filmed_camera cameras[2] = TWO_CAMERAS;
     adcgs_play_state play = make_state(cameras), second = play;
     adcgs_drawing *const drawing = malloc(sizeof *drawing);
     adcgs_overlay_draw(drawing, &adcgs_glyph_type, &play, &figures);
@@ -266,7 +266,7 @@ static int byte_letters(void *arg, int size, const char *text)
 /** Text is UTF-8. Names of streams may be anything. */
 static void test_text(void **state)
 {
-    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_filmed_camera cameras[2] = TWO_CAMERAS;
     adcgs_play_state play = make_state(cameras);
     static const adcgs_type bytes = {.width = byte_letters};
     adcgs_drawing *const d = malloc(sizeof *d);

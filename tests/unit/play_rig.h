@@ -57,12 +57,20 @@ static inline double looks_at(const adcgs_orbit_control *control, const double p
 }
 
 /** A player in a window of 640x480, at second 50 of the wall clock. */
-static inline adcgs_play_state make_state(const adcgs_camera cameras[2])
+#define TWO_CAMERAS                             \
+    {                                           \
+        {.camera = make_camera(), .path = -1},  \
+        {                                       \
+            .camera = make_camera(), .path = -1 \
+        }                                       \
+    }
+
+static inline adcgs_play_state make_state(const adcgs_filmed_camera cameras[2])
 {
     const adcgs_info info = make_info("right-handed, z up");
     const adcgs_camera home = make_camera();
     adcgs_play_state play;
-    adcgs_play_init(&play, &info, &home, cameras);
+    adcgs_play_init(&play, &info, &home, cameras, NULL);
     adcgs_play_resize(&play, 640, 480, 1.0);
     adcgs_play_tick(&play, 50.0);
     return play;

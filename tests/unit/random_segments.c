@@ -4,6 +4,7 @@
 
 #include "model/model_priv.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static int draw(uint64_t *state, int lo, int hi)
@@ -29,7 +30,9 @@ static adcgs_status random_cameras(adcgs_stream *stream, uint64_t *state, adcgs_
     if (!stream->cameras)
         return ADCGS_ERR_MEMORY;
     for (uint32_t i = 0; i < stream->n_cameras; i++) {
-        adcgs_camera *c = &stream->cameras[i];
+        adcgs_camera *c = &stream->cameras[i].camera;
+        stream->cameras[i].time = i ? i * 0.5 : (double)NAN;
+        stream->cameras[i].path = i && stream->n_cameras == 3 ? 0 : -1;
         *c = (adcgs_camera){.width = 64, .height = 48, .fx = 50 + (i > 1), .fy = 50, .cx = 32, .cy = 24, .near_plane = 0.01};
         memcpy(c->cam_to_world, pose, sizeof pose);
         c->cam_to_world[7] = i == 1 ? 0.1 : -0.5; /* 0.1 is no binary32 */

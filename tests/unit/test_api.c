@@ -6,6 +6,7 @@
 
 #include "decoder_fixture.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #define GUARD 0xa5
@@ -272,7 +273,7 @@ static void test_writer_limits(void **state)
 {
     fixture *f = *state;
     adcgs_stream *s = &f->stream;
-    adcgs_camera *const cameras = s->cameras, *many = calloc(65536, sizeof *many);
+    adcgs_stored_camera *const cameras = s->cameras, *many = calloc(65536, sizeof *many);
     const uint32_t n_cameras = s->n_cameras;
     char *const key = s->meta[0].key, longer[66];
     adcgs_buffer out;
@@ -280,7 +281,7 @@ static void test_writer_limits(void **state)
     adcgs_buffer_init(&out);
     assert_non_null(many);
     for (size_t i = 0; i < 65536; i++)
-        many[i] = fixture_camera;
+        many[i] = (adcgs_stored_camera){.camera = fixture_camera, .time = nan(""), .path = -1};
     s->cameras = many;
     s->n_cameras = 65536;
     assert_int_equal(adcgs_stream_write(s, &out, &error), ADCGS_ERR_LIMIT);

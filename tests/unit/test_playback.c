@@ -135,10 +135,18 @@ static void test_view(void **state)
     adcgs_orbit_control_view(&control, 1920, 1440, &view); /* the same aspect: equal to stretching, to the last bit */
     adcgs_camera_stretch(&again, 1920, 1440);
     assert_memory_equal(&view, &again, sizeof view);
-    adcgs_orbit_control_view(&control, 1000, 480, &view); /* 180 pixels more at both sides */
-    assert_true(view.fx == 500.0 && view.fy == 510.0 && view.cx == 480.0 && view.cy == 250.0);
-    adcgs_orbit_control_view(&control, 320, 480, &view); /* half the size, 120 more above and below */
-    assert_true(view.fx == 250.0 && view.fy == 255.0 && view.cx == 150.0 && view.cy == 245.0);
+    adcgs_orbit_control_view(&control, 1000, 480, &view); /* enlarged, with 135 pixels less above and below */
+    assert_true(view.fx == 781.25 && view.fy == 796.875 && view.cx == 468.75 && view.cy == 255.625);
+    assert_true(adcgs_orbit_control_inset(&control, 1000, 480, 0) == 0.0);
+    adcgs_orbit_control_view(&control, 320, 480, &view); /* 160 pixels less at both sides */
+    assert_true(view.fx == 500.0 && view.fy == 510.0 && view.cx == 140.0 && view.cy == 250.0);
+    adcgs_orbit_control_view(&control, 3000, 480, &view); /* half of the height, and 860 pixels more at both sides */
+    assert_true(view.fx == 1000.0 && view.fy == 1020.0 && view.cx == 1460.0 && view.cy == 260.0);
+    assert_true(fabs(adcgs_orbit_control_inset(&control, 3000, 480, 0) - 860.0 / 3000.0) < 1e-12);
+    assert_true(adcgs_orbit_control_inset(&control, 3000, 480, 1) == 0.0);
+    adcgs_orbit_control_view(&control, 160, 480, &view); /* half of the width, and 120 pixels more above and below */
+    assert_true(view.fx == 250.0 && view.cx == 70.0 && view.cy == 245.0);
+    assert_true(fabs(adcgs_orbit_control_inset(&control, 160, 480, 1) - 0.25) < 1e-12);
     view = control.camera;
     adcgs_camera_fit(&view, 320, 480, 1); /* nothing more above and below, 160 pixels less at both sides */
     assert_true(view.fx == 500.0 && view.fy == 510.0 && view.cx == 140.0 && view.cy == 250.0 && view.width == 320);

@@ -5,7 +5,8 @@
 #include "api/decoder_priv.h"
 #include "api/frame_samples.h"
 #include "base/digest.h"
-#include "camera/path.h"
+#include "camera/follow.h"
+#include "camera/pivot.h"
 #include "stream/chunk.h"
 #include "wasm/export.h"
 #include "wasm/page_scene.h"
@@ -23,8 +24,9 @@
 static struct {
     adcgs_decoder *decoder;
     adcgs_info info;
-    adcgs_camera *cameras;
+    adcgs_filmed_camera *cameras;
     adcgs_camera home;
+    double pivot[3];
     adcgs_error error;
     char fault[sizeof((adcgs_error *)0)->text]; /* the first concealed fault */
     float *values;
@@ -147,16 +149,26 @@ size_t PAGE_EXPORT(page_camera_size)(void)
     return sizeof(adcgs_camera);
 }
 
-/** The stored cameras, info.cameras of them. */
-const adcgs_camera *PAGE_EXPORT(page_cameras)(void)
+size_t PAGE_EXPORT(page_filmed_size)(void)
+{
+    return sizeof(adcgs_filmed_camera);
+}
+
+/** The stored cameras with their times, info.cameras of them. */
+const adcgs_filmed_camera *PAGE_EXPORT(page_cameras)(void)
 {
     const adcgs_info *info = page_info();
     free(scene.cameras);
     scene.cameras = info ? calloc((size_t)info->cameras + 1, sizeof *scene.cameras) : NULL;
-    for (int i = 0; scene.cameras && i < info->cameras; i++)
-        if (adcgs_get_camera(scene.decoder, i, &scene.cameras[i], &scene.error) != ADCGS_OK)
-            return NULL;
+    if (!scene.cameras || adcgs_filmed_cameras_get(scene.cameras, scene.decoder, info, &scene.error) != ADCGS_OK)
+        return NULL;
     return scene.cameras;
+}
+
+/** The point under a place of a camera's image, x and y from 0 to 1; NULL if it shows background. */
+const double *PAGE_EXPORT(page_pivot)(const adcgs_camera *camera, double time, double x, double y)
+{
+    return adcgs_pivot_find(scene.pivot, scene.decoder, camera, time, x, y, &scene.error) == ADCGS_OK ? scene.pivot : NULL;
 }
 
 /** The first view, chosen as in the player. */

@@ -5,6 +5,7 @@
 #include "camera/rotation.h"
 #include "play/scale.h"
 #include "play/actions.h"
+#include "play/by_hand.h"
 #include "render/render.h"
 #include "wasm/export.h"
 
@@ -20,7 +21,9 @@ static struct {
     double origin[3], unit; /* of the scene */
     adcgs_play_scale scale;
     adcgs_camera view;
-    adcgs_camera *cameras;
+    adcgs_filmed_camera *cameras;
+    adcgs_filmed_view filmed;
+    int pivots; /* number of the last request that was given away */
 } page;
 
 /** Set the time range to play, and its available part, from the current knowledge of the stream. */
@@ -35,7 +38,7 @@ void PAGE_EXPORT(view_span)(const adcgs_info *info, int over)
 }
 
 /** Open a scene with its first view and n stored cameras. \return 0, or less if there is no memory. */
-int PAGE_EXPORT(view_open)(const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *cameras, int over)
+int PAGE_EXPORT(view_open)(const adcgs_info *info, const adcgs_camera *home, const adcgs_filmed_camera *cameras, int over)
 {
     const int statistics = page.state.statistics;
     free(page.cameras);
@@ -43,7 +46,11 @@ int PAGE_EXPORT(view_open)(const adcgs_info *info, const adcgs_camera *home, con
     if (!page.cameras)
         return -1;
     memcpy(page.cameras, cameras, (size_t)info->cameras * sizeof *cameras);
-    adcgs_play_init(&page.state, info, home, page.cameras);
+    adcgs_filmed_view_clear(&page.filmed);
+    if (adcgs_filmed_view_init(&page.filmed, info, page.cameras, home, NULL) != ADCGS_OK)
+        return -1;
+    adcgs_play_init(&page.state, info, home, page.cameras, &page.filmed);
+    page.pivots = 0;
     page.state.statistics = statistics;
     adcgs_play_scale_init(&page.scale, info->tiers);
     memcpy(page.origin, info->scene_origin, sizeof page.origin);
@@ -83,12 +90,7 @@ void PAGE_EXPORT(view_event)(int kind, int key, int down, int again, int button,
 /** Fingers have no buttons: they pan, in pixels, and zoom, in steps of the wheel. */
 void PAGE_EXPORT(view_pinch)(double dx, double dy, double steps)
 {
-    adcgs_orbit_control *const control = &page.state.control;
-    adcgs_orbit_control_view(control, page.state.width, page.state.height, &page.view);
-    adcgs_orbit_control_pan(control, dx / page.view.fx, dy / page.view.fy);
-    adcgs_orbit_control_zoom(control, steps);
-    page.state.moved = page.state.now;
-    page.state.jumped = -1;
+    adcgs_play_pinch(&page.state, dx, dy, steps);
 }
 
 void PAGE_EXPORT(view_tick)(double now)
@@ -119,7 +121,42 @@ void PAGE_EXPORT(view_place)(const adcgs_camera *camera)
     page.state.flying = 0;
     page.state.jumped = -1;
     page.state.moved = page.state.now;
+    page.filmed.following = 0;
     adcgs_orbit_control_jump(&page.state.control, camera);
+    adcgs_play_placed(&page.state);
+}
+
+/** Gives away a new request for a pivot once. \return its number, or 0 if there is none */
+int PAGE_EXPORT(view_pivot_wanted)(void)
+{
+    if (page.pivots == page.state.pivots)
+        return 0;
+    return page.pivots = page.state.pivots;
+}
+/** The requested place, 0 to 1 over width (axis 0) and height (axis 1). */
+double PAGE_EXPORT(view_pivot_at)(int axis)
+{
+    return page.state.pivot_at[axis != 0];
+}
+/** Answers the request with this number. */
+void PAGE_EXPORT(view_pivot)(int number, double x, double y, double z)
+{
+    const double point[3] = {x, y, z};
+    adcgs_play_pivot(&page.state, number, point);
+}
+/** How far the view is outside of the filmed region, 0 to 1. */
+double PAGE_EXPORT(view_outside)(void)
+{
+    return adcgs_play_outside(&page.state);
+}
+int PAGE_EXPORT(view_following)(void)
+{
+    return page.filmed.following ? 1 + page.filmed.beside : 0; /* 2: moved away from the path */
+}
+/** The share of the image's width (axis 0) or height (axis 1) at each of two sides that is next to the filmed view. */
+double PAGE_EXPORT(view_inset)(int axis)
+{
+    return adcgs_orbit_control_inset(&page.state.control, page.state.width, page.state.height, axis != 0);
 }
 
 /** The camera for the image; a divider reduces its size. */

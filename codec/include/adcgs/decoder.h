@@ -167,6 +167,19 @@ ADCGS_API adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *
 ADCGS_API adcgs_status adcgs_get_camera(const adcgs_decoder *decoder, int index, adcgs_camera *camera, adcgs_error *error);
 
 /**
+ * Get the time at which a stored camera filmed (clause "cams"). The keys of a filmed path have successive indices and ascending
+ * times; between them an application interpolates.
+ * \param decoder an open decoder
+ * \param index 0 .. adcgs_info.cameras - 1
+ * \param time receives seconds; NaN if the camera has no time
+ * \param path receives the number of the path that the camera is a key of, 0 for the first path; -1 if it is none
+ * \param error says why it failed
+ * \return ADCGS_OK, or ADCGS_ERR_USAGE if there is no such camera
+ */
+ADCGS_API adcgs_status adcgs_get_camera_time(const adcgs_decoder *decoder, int index, double *time, int *path,
+                                             adcgs_error *error);
+
+/**
  * Get a text that the stream stores (clause "meta"). Its contents are untrusted: UTF-8 is promised, not checked.
  * \param decoder an open decoder
  * \param key of the text

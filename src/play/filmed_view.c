@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The view and the cameras that filmed. */
+#include "config.h"
+
+#include "play/filmed_view.h"
+
+#include "base/base.h"
+#include "camera/rotation.h"
+
+#include <math.h>
+
+/** out = a b, poses of 3x4 numbers; out must be neither a nor b. */
+static void multiply(const double a[12], const double b[12], double out[12])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 4; j++)
+            out[4 * i + j] = a[4 * i] * b[j] + a[4 * i + 1] * b[4 + j] + a[4 * i + 2] * b[8 + j] + (j == 3 ? a[4 * i + 3] : 0.0);
+}
+
+static void transform(const double pose[12], const double point[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = pose[4 * i] * point[0] + pose[4 * i + 1] * point[1] + pose[4 * i + 2] * point[2] + pose[4 * i + 3];
+}
+
+/** Distance from a camera to the scene's centre, as a first guess of that to the pivot. */
+static double distance_to_centre(const adcgs_info *info, const adcgs_camera *camera)
+{
+    double sum = 0;
+    for (int i = 0; i < 3; i++)
+        sum += pow(camera->cam_to_world[4 * i + 3] - info->scene_origin[i], 2);
+    return sqrt(sum);
+}
+
+adcgs_status adcgs_filmed_view_init(adcgs_filmed_view *view, const adcgs_info *info, const adcgs_filmed_camera *cameras,
+                                    const adcgs_camera *home, adcgs_error *error)
+{
+    *view = (adcgs_filmed_view){.following = 0};
+    ADCGS_TRY(adcgs_follow_init(&view->follow, cameras, info->cameras, 0, error));
+    return adcgs_view_limit_init(&view->limit, cameras, info->cameras, &view->follow, distance_to_centre(info, home), error);
+}
+
+void adcgs_filmed_view_clear(adcgs_filmed_view *view)
+{
+    adcgs_follow_clear(&view->follow);
+    adcgs_view_limit_clear(&view->limit);
+}
+
+int adcgs_filmed_view_has_path(const adcgs_filmed_view *view)
+{
+    return view->follow.spline.n > 0;
+}
+
+void adcgs_filmed_view_start(adcgs_filmed_view *view, adcgs_orbit_control *control, double time)
+{
+    adcgs_camera camera;
+    adcgs_follow_at(&view->follow, time, &camera);
+    adcgs_orbit_control_jump(control, &camera);
+    memcpy(view->base, camera.cam_to_world, sizeof view->base);
+    adcgs_filmed_view_moved(view, control);
+    view->following = 1;
+    view->beside = 0;
+}
+
+void adcgs_filmed_view_tick(adcgs_filmed_view *view, adcgs_orbit_control *control, double time)
+{
+    adcgs_camera camera;
+    if (!view->following)
+        return;
+    adcgs_follow_at(&view->follow, time, &camera);
+    memcpy(view->base, camera.cam_to_world, sizeof view->base);
+    if (view->beside)
+        multiply(view->base, view->offset, camera.cam_to_world);
+    control->camera = camera;
+    transform(view->base, view->target, control->target);
+}
+
+void adcgs_filmed_view_moved(adcgs_filmed_view *view, const adcgs_orbit_control *control)
+{
+    double inverse[12];
+    memcpy(inverse, view->base, sizeof inverse);
+    adcgs_pose_invert(inverse);
+    multiply(inverse, control->camera.cam_to_world, view->offset);
+    transform(inverse, control->target, view->target);
+    view->beside = 1;
+}
+
+static double limit_at(const adcgs_filmed_view *view, const adcgs_orbit_control *control)
+{
+    return adcgs_view_limit_at(&view->limit, control->camera.cam_to_world);
+}
+
+double adcgs_filmed_view_outside(const adcgs_filmed_view *view, const adcgs_orbit_control *control)
+{
+    return view->unlimited ? 0 : fmax(0, fmin(limit_at(view, control) - 1, 1));
+}
+
+double adcgs_filmed_view_share(const adcgs_filmed_view *view, const adcgs_orbit_control *before, const adcgs_orbit_control *after)
+{
+    const double from = limit_at(view, before), to = limit_at(view, after);
+    if (view->unlimited || to <= 1 || to <= from)
+        return 1;
+    /* Full inside, and down to nothing at the limit, with the square of the rest of the way. */
+    const double rest = fmax(0, fmin(2 - fmax(from, 1), 1)), share = rest * rest;
+    return fmin(share, fmax(0, (2 - from) / (to - from)));
+}
