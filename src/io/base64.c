@@ -17,3 +17,14 @@ void adcgs_base64_write(FILE *file, const uint8_t *data, size_t bytes, int lines
             fputc('\n', file);
     }
 }
+
+int adcgs_base64_value(int c)
+{
+    if (c >= 'A' && c <= 'Z')
+        return c - 'A';
+    if (c >= 'a' && c <= 'z')
+        return c - 'a' + 26;
+    if (c >= '0' && c <= '9')
+        return c - '0' + 52;
+    return c == '+' ? 62 : c == '/' ? 63 : -1;
+}

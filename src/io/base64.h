@@ -9,5 +9,7 @@
 
 /** Writes base 64 with its padding, in lines of 76 letters (RFC 2045) if lines is not 0. */
 void adcgs_base64_write(FILE *file, const uint8_t *data, size_t bytes, int lines);
+/** The six bits of a letter; -1 if c is none. */
+int adcgs_base64_value(int c);
 
 #endif

@@ -78,6 +78,7 @@ adcgs_status adcgs_kind_refuse(const adcgs_kind *kind, const char *path, adcgs_w
 static int fits(const adcgs_kind *kind, adcgs_want want)
 {
     return kind->class == ADCGS_KIND_UNKNOWN || (kind->is_read && kind->class == wants[want].class) ||
+           (want == ADCGS_WANT_STREAM && kind->class == ADCGS_KIND_PAGE) ||   /* io/page_stream looks for the stream in it */
            (want != ADCGS_WANT_STREAM && kind->class == ADCGS_KIND_FOLDER) || /* other readers need a regular file and report
                                                                                  this */
            (want == ADCGS_WANT_SCENE && kind->is_read && kind->class == ADCGS_KIND_SPLATS) ||

@@ -18,7 +18,7 @@ typedef enum adcgs_kind_class {
     ADCGS_KIND_UNKNOWN, /**< not in the table: the reader has its own message */
     ADCGS_KIND_FOLDER,
     ADCGS_KIND_STREAM, /**< an adcgs stream */
-    ADCGS_KIND_PAGE,   /**< a page for browsers with a stream in it */
+    ADCGS_KIND_PAGE,   /**< a page (HTML), which may have a stream in it */
     ADCGS_KIND_IMAGE,
     ADCGS_KIND_VIDEO,
     ADCGS_KIND_SPLATS,

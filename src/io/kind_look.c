@@ -227,8 +227,8 @@ static const adcgs_kind *find_json(const look *l)
 static const adcgs_kind *find_markup(const look *l)
 {
     static const adcgs_kind page = {ADCGS_KIND_PAGE, "a page of adcgs-share", NULL,
-                                    "open it in a browser; programs need the stream that it was made from", 0},
-                            html = OTHER("a page (HTML)", "save the file that it links to"),
+                                    "adcgs-dec renders its stream, adcgs-info describes it", 0},
+                            html = {ADCGS_KIND_PAGE, "a page (HTML)", NULL, "save the file that it links to", 0},
                             agisoft = NO_SCENE("Agisoft Metashape's cameras (XML)", TO_COLMAP),
                             blocks = NO_SCENE("cameras as BlocksExchange (XML)", TO_COLMAP), xml = OTHER("an XML text", NULL);
     static const char head[] = "<!doctype html", root[] = "<html";

@@ -25,11 +25,11 @@
 
 typedef adcgs_dec_settings settings;
 
-static adcgs_status open_input(adcgs_decoder **decoder, adcgs_http **http, const char *input, const settings *s,
+static adcgs_status open_input(adcgs_decoder **decoder, adcgs_operand *source, const char *input, const settings *s,
                                adcgs_error *error)
 {
     const adcgs_dec_open_config how = {.cli = s->cli, .budget = &s->budget, .config = &s->config};
-    ADCGS_TRY(adcgs_dec_open(decoder, http, input, &how, error));
+    ADCGS_TRY(adcgs_dec_open(decoder, source, input, &how, error));
     return adcgs_set_tiers(*decoder, s->tiers, error);
 }
 
@@ -211,7 +211,7 @@ static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **de
     ADCGS_TRY(adcgs_requests_read(&requests, s->answer, error));
     s->config.strict_end |= requests.complete;
     s->config.layers = requests.layers ? requests.layers : s->config.layers;
-    adcgs_status status = open_input(decoder, &s->http, s->input, s, error);
+    adcgs_status status = open_input(decoder, &s->source, s->input, s, error);
     const char *const fault = adcgs_fault_class(status);
     if (status == ADCGS_OK)
         status = adcgs_requests_answer(&requests, s->input, *decoder, error);
@@ -282,7 +282,7 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
     const int as_clip = !s->cameras && !s->splats && !s->beside && s->budget.of == ADCGS_BUDGET_NONE && s->part < 0.0;
     if (as_clip && (adcgs_pipe_is(s->input) || (adcgs_is_url(s->input) && !s->config.on_demand && !s->config.conceal)))
         return show_live(cli, s, decoder, mismatch, error);
-    ADCGS_TRY(open_input(decoder, &s->http, s->input, s, error));
+    ADCGS_TRY(open_input(decoder, &s->source, s->input, s, error));
     from.decoder = *decoder;
     ADCGS_TRY(place_times(s, from.decoder, error));
     if (s->cameras)
@@ -291,7 +291,7 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
         const adcgs_dec_splats_config how = {.target = s->splats, .rest_degree = s->rest_degree};
         return adcgs_dec_splats(cli, from.decoder, s->input, &how, &s->request, error);
     }
-    adcgs_status status = s->beside ? open_input(&from.beside, &s->http_beside, s->beside, s, error) : ADCGS_OK;
+    adcgs_status status = s->beside ? open_input(&from.beside, &s->beside_source, s->beside, s, error) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = decode(cli, s, &from, mismatch, error);
     adcgs_close(&from.beside);
@@ -333,11 +333,11 @@ int main(int argc, char **argv)
         status = play(&cli, &s, &mismatch, &error);
     else if (status == ADCGS_OK)
         status = show(&cli, &s, &decoder, &mismatch, &error);
-    status = adcgs_http_explain(s.http, status, &error);
-    status = adcgs_http_explain(s.http_beside, status, &error);
+    status = adcgs_operand_explain(&s.source, status, &error);
+    status = adcgs_operand_explain(&s.beside_source, status, &error);
     adcgs_close(&decoder);
-    adcgs_http_close(&s.http);
-    adcgs_http_close(&s.http_beside);
+    adcgs_operand_close(&s.source);
+    adcgs_operand_close(&s.beside_source);
     adcgs_pool_free(&s.config.pool);
     if (adcgs_interrupted())
         raise(adcgs_interrupted()); /* ends with the signal, so that the shell sees the reason; the handler is removed by now */

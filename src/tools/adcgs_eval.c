@@ -5,6 +5,7 @@
 #include "base/cpu_detect.h"
 #include "cli/cli.h"
 #include "io/kind.h"
+#include "io/operand.h"
 #include "layouts/open.h"
 #include "metric/crop.h"
 #include "tools/eval_match.h"
@@ -204,7 +205,8 @@ static adcgs_status compare(report *r, adcgs_decoder *decoder, adcgs_error *erro
 
 static adcgs_status check_operands(const settings *s, adcgs_error *error)
 {
-    if (adcgs_kind_at(s->file)->class != ADCGS_KIND_STREAM && adcgs_kind_at(s->scene)->class == ADCGS_KIND_STREAM)
+    const adcgs_kind_class class = adcgs_kind_at(s->file)->class;
+    if (class != ADCGS_KIND_STREAM && class != ADCGS_KIND_PAGE && adcgs_kind_at(s->scene)->class == ADCGS_KIND_STREAM)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%.100s is a stream and %.100s is not: give the stream first, then the scene",
                           s->scene, s->file);
     return adcgs_kind_check(s->file, ADCGS_WANT_STREAM, error);
@@ -212,14 +214,17 @@ static adcgs_status check_operands(const settings *s, adcgs_error *error)
 
 static adcgs_status decode_and_compare(report *r, adcgs_error *error)
 {
-    adcgs_decoder *decoder;
+    adcgs_decoder *decoder = NULL;
     const double start = adcgs_seconds();
-    ADCGS_TRY(adcgs_open_file(&decoder, r->set->file, &r->set->config, error));
+    adcgs_operand source;
+    adcgs_status status = adcgs_operand_decode(&decoder, &source, r->set->file, &r->set->config, error);
     r->out.decode_seconds = adcgs_seconds() - start;
-    adcgs_status status = adcgs_set_tiers(decoder, r->set->tiers, error);
+    if (status == ADCGS_OK)
+        status = adcgs_set_tiers(decoder, r->set->tiers, error);
     if (status == ADCGS_OK)
         status = compare(r, decoder, error);
     adcgs_close(&decoder);
+    adcgs_operand_close(&source);
     return status;
 }
 

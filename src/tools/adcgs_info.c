@@ -7,18 +7,15 @@
 #include "base/thread_pool.h"
 #include "cli/cli.h"
 #include "cli/text.h"
-#include "io/http.h"
-#include "io/kind.h"
 #include "io/offset.h"
+#include "io/operand.h"
 #include "model/model_priv.h"
-#include "stream/input.h"
 #include "tools/info_check.h"
 #include "tools/info_cut.h"
 #include "tools/info_points.h"
 #include "tools/info_report.h"
 #include "tools/info_why.h"
 
-#include <errno.h>
 #include <stdlib.h>
 
 typedef struct settings {
@@ -59,50 +56,25 @@ static void on_element(void *user, uint64_t bit, const char *element, const char
         last->segment = (unsigned)strtoul(value, NULL, 10);
 }
 
-/** The source of a stream, read in order. */
-typedef struct origin {
-    FILE *file;
-    adcgs_http *http;
-} origin;
-
-static adcgs_status open_origin(origin *from, const char *input, adcgs_error *error)
-{
-    *from = (origin){.file = NULL};
-    if (adcgs_is_url(input))
-        return adcgs_http_open(&from->http, input, &(adcgs_http_config){.limit = 0}, error);
-    from->file = strcmp(input, "-") ? fopen(input, "rb") : stdin;
-    return from->file ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", input, strerror(errno));
-}
-
-static void close_origin(origin *from)
-{
-    if (from->file && from->file != stdin)
-        fclose(from->file);
-    adcgs_http_close(&from->http);
-}
-
 static adcgs_status read_report(adcgs_info_report *r, const settings *s, adcgs_error *error)
 {
     adcgs_read_options options = {.layers = 0};
-    origin from;
-    ADCGS_TRY(adcgs_kind_check(s->input, ADCGS_WANT_STREAM, error));
-    ADCGS_TRY(open_origin(&from, s->input, error));
-    const adcgs_read_fn read = from.http ? adcgs_http_read : adcgs_file_read;
-    void *const user = from.http ? (void *)from.http : (void *)from.file;
+    adcgs_operand from;
+    ADCGS_TRY(adcgs_operand_open(&from, s->input, &(adcgs_http_config){.limit = 0}, error));
     adcgs_status status = adcgs_cpu_resolve(ADCGS_CPU_AUTO, &options.cpu, error);
     if (status == ADCGS_OK)
         status = adcgs_pool_create(&options.pool, 0, error);
     if (status == ADCGS_OK)
-        status = adcgs_stream_read(&r->stream, read, user, &options, on_element, r, error);
+        status = adcgs_stream_read(&r->stream, adcgs_operand_read, &from, &options, on_element, r, error);
     if (status == ADCGS_OK && r->failed)
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "no memory for the list of chunks");
     if (status == ADCGS_OK)
         adcgs_stream_info(&r->stream, &r->info);
     adcgs_pool_free(&options.pool);
     if (status != ADCGS_OK)
-        adcgs_error_locate(error, from.file == stdin ? "standard input" : s->input);
-    status = adcgs_http_explain(from.http, status, error);
-    close_origin(&from);
+        adcgs_error_locate(error, from.name);
+    status = adcgs_operand_explain(&from, status, error);
+    adcgs_operand_close(&from);
     return status;
 }
 
@@ -272,9 +244,7 @@ static adcgs_status print_report(const adcgs_info_report *r, const settings *s, 
 static int check(const adcgs_cli *cli, const settings *s, adcgs_error *error)
 {
     uint32_t faults = 0;
-    adcgs_status status = adcgs_kind_check(s->input, ADCGS_WANT_STREAM, error);
-    if (status == ADCGS_OK)
-        status = adcgs_info_check(s->input, s->repair, &faults, error);
+    adcgs_status status = adcgs_info_check(s->input, s->repair, &faults, error);
     if (status == ADCGS_OK)
         status = adcgs_cli_flush(error);
     fflush(stdout);

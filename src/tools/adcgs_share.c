@@ -6,7 +6,7 @@
 #include "cli/cli.h"
 #include "io/atomic.h"
 #include "io/file.h"
-#include "io/kind.h"
+#include "io/operand.h"
 #include "tools/share_poster.h"
 
 #include <adcgs/adcgs.h>
@@ -26,6 +26,7 @@ typedef struct settings {
 /** The contents of a page. */
 typedef struct parts {
     uint8_t *page, *stream;
+    char *name; /**< of the stream, if it comes from a page; else NULL */
     size_t page_bytes, stream_bytes;
     adcgs_share_scene scene;
 } parts;
@@ -55,9 +56,8 @@ static adcgs_status prepare_view(const settings *s, adcgs_share_scene *scene, co
 {
     if (s->camera)
         ADCGS_TRY(adcgs_camera_find_stored(&scene->camera, decoder, info, s->camera, "", error));
-    if (s->has_time && (s->time < info->time_start || s->time > info->time_end))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %g: the stream lasts from %g to %g s", s->time, info->time_start,
-                          info->time_end);
+    const adcgs_camera_path_request request = {.has_times = s->has_time, .begin = s->time, .end = s->time};
+    ADCGS_TRY(adcgs_camera_path_check_times(info, &request, error));
     if (s->poster)
         return strcmp(s->poster, "none") ? adcgs_share_load_poster(scene, s->poster, error) : ADCGS_OK;
     const adcgs_status status = adcgs_share_render_poster(scene, decoder, error);
@@ -115,8 +115,9 @@ static adcgs_status write_page(const settings *s, const char *path, const parts 
 static adcgs_status make_page(const settings *s, const char *path, parts *p, adcgs_error *error)
 {
     if (path) {
-        ADCGS_TRY(adcgs_kind_check(path, ADCGS_WANT_STREAM, error));
-        ADCGS_TRY(adcgs_file_load(&p->stream, &p->stream_bytes, path, STREAM_BYTES_MAX, error));
+        ADCGS_TRY(adcgs_operand_load(&p->stream, &p->stream_bytes, &p->name, path, STREAM_BYTES_MAX, error));
+        if (p->name && *p->name)
+            p->scene.name = p->name;
         p->scene.data = p->stream;
         p->scene.bytes = p->stream_bytes;
         ADCGS_TRY(prepare_scene(s, path, p, error));
@@ -144,6 +145,7 @@ static adcgs_status share(const settings *s, const char *path, adcgs_error *erro
     const adcgs_status status = make_page(s, path, &p, error);
     free(p.page);
     free(p.stream);
+    free(p.name);
     free(p.scene.poster.data);
     return status;
 }

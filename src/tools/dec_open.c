@@ -2,11 +2,9 @@
 /** \file Opens a stream from any source. */
 #include "tools/dec_open.h"
 
-#include "io/kind.h"
 #include "stream/input.h"
 #include "stream/salvage.h"
 
-#include <errno.h>
 #include <stdlib.h>
 
 /** Opens a stream that is read in order, within the budget. */
@@ -17,14 +15,13 @@ static adcgs_status open_in_order(adcgs_decoder **decoder, adcgs_read_fn read, v
                                                  : adcgs_open_stream(decoder, read, user, how->config, error);
 }
 
-/** Opens the bytes of a file that the budget allows. */
+/** Opens the bytes of a file or page that the budget allows. */
 static adcgs_status open_part(adcgs_decoder **decoder, const char *input, const adcgs_dec_open_config *how, adcgs_error *error)
 {
-    FILE *file = fopen(input, "rb");
-    if (!file)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", input, strerror(errno));
-    const adcgs_status status = open_in_order(decoder, adcgs_file_read, file, how, error);
-    fclose(file);
+    adcgs_operand source;
+    ADCGS_TRY(adcgs_operand_open(&source, input, NULL, error));
+    const adcgs_status status = open_in_order(decoder, adcgs_operand_read, &source, how, error);
+    adcgs_operand_close(&source);
     if (status != ADCGS_OK)
         adcgs_error_locate(error, input);
     return status;
@@ -87,15 +84,15 @@ static adcgs_status open_pipe(adcgs_decoder **decoder, const adcgs_dec_open_conf
     return status == ADCGS_OK ? adcgs_dec_report_tune_in(how->cli, *decoder, "standard input", error) : status;
 }
 
-adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_http **http, const char *input, const adcgs_dec_open_config *how,
+adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_operand *source, const char *input, const adcgs_dec_open_config *how,
                             adcgs_error *error)
 {
-    *http = NULL;
-    ADCGS_TRY(adcgs_kind_check(input, ADCGS_WANT_STREAM, error));
+    *source = (adcgs_operand){.name = input};
     if (adcgs_is_url(input))
-        return how->config->conceal ? open_whole(decoder, input, how, error) : open_url(decoder, http, input, how, error);
+        return how->config->conceal ? open_whole(decoder, input, how, error)
+                                    : open_url(decoder, &source->http, input, how, error);
     if (strcmp(input, "-"))
         return how->budget->of == ADCGS_BUDGET_BYTES ? open_part(decoder, input, how, error)
-                                                     : adcgs_open_file(decoder, input, how->config, error);
+                                                     : adcgs_operand_decode(decoder, source, input, how->config, error);
     return open_pipe(decoder, how, error);
 }

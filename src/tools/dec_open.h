@@ -4,7 +4,7 @@
 #define ADCGS_TOOLS_DEC_OPEN_H
 
 #include "cli/cli.h"
-#include "io/http.h"
+#include "io/operand.h"
 #include "tools/dec_budget.h"
 
 /** Settings of the command line for opening. */
@@ -15,10 +15,9 @@ typedef struct adcgs_dec_open_config {
 } adcgs_dec_open_config;
 
 /**
- * Opens the stream. "-" is standard input. *http is the connection that the decoder of a URL keeps reading; close it after the
- * decoder. NULL if everything has been read.
+ * Opens the stream. "-" is standard input. The decoder may keep reading *source, a page or a URL: close it after the decoder.
  */
-adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_http **http, const char *input, const adcgs_dec_open_config *how,
+adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_operand *source, const char *input, const adcgs_dec_open_config *how,
                             adcgs_error *error);
 
 /** Prints a remark if the decoder tuned in after the stream's beginning (config.tune_in). */

@@ -8,9 +8,9 @@
 
 #ifdef HAVE_ENCODER
 
-#include "io/file.h"
 #include "io/http.h"
 #include "io/kind.h"
+#include "io/operand.h"
 #include "play/play.h"
 #include "stream/salvage.h"
 
@@ -122,7 +122,7 @@ static adcgs_status play_file(const adcgs_dec_play *how, adcgs_play_settings *se
     uint8_t *data;
     ADCGS_TRY(adcgs_is_url(how->input)
                   ? adcgs_http_load(&data, &settings->source.bytes, how->input, adcgs_salvage_bytes, adcgs_interrupted, error)
-                  : adcgs_file_load(&data, &settings->source.bytes, how->input, STREAM_BYTES_MAX, error));
+                  : adcgs_operand_load(&data, &settings->source.bytes, NULL, how->input, STREAM_BYTES_MAX, error));
     settings->source.data = data;
     const adcgs_status status = play(how, settings, failed, error);
     free(data);

@@ -5,7 +5,7 @@
 
 #include "camera/path.h"
 #include "cli/cli.h"
-#include "io/http.h"
+#include "io/operand.h"
 #include "io/video.h"
 #include "tools/dec_budget.h"
 
@@ -17,9 +17,9 @@ typedef struct adcgs_dec_settings {
     adcgs_camera_path_request request;
     adcgs_config config;
     int quiet, order, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
-    double part;                    /**< part of the stream at which the frame lies (--time N%); negative: not given */
-    double opened;                  /**< time before opening the input, in seconds */
-    adcgs_http *http, *http_beside; /**< connections of inputs that are URLs */
+    double part;                         /**< part of the stream at which the frame lies (--time N%); negative: not given */
+    double opened;                       /**< time before opening the input, in seconds */
+    adcgs_operand source, beside_source; /**< of the bytes that the decoders still read */
 } adcgs_dec_settings;
 
 /** Fills the table of options, in the order of the help, with targets in the settings. */

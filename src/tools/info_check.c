@@ -1,19 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Checks and repairs a stream. */
-#define _POSIX_C_SOURCE 200809L
-#define _FILE_OFFSET_BITS 64
+#include "config.h"
 
 #include "tools/info_check.h"
 
 #include "base/cpu_detect.h"
 #include "cli/text.h"
 #include "io/atomic.h"
-#include "io/http.h"
+#include "io/operand.h"
+#include "io/pipe.h"
 #include "model/model_priv.h"
-#include "stream/input.h"
 #include "stream/salvage.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -88,12 +86,13 @@ adcgs_status adcgs_info_check(const char *path, const char *repaired, uint32_t *
 {
     if (adcgs_is_url(path))
         return check_url(path, repaired, faults, error);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
-    const adcgs_status status = fseeko(file, 0, SEEK_END)
-                                    ? adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno))
-                                    : check(adcgs_file_read_at, file, (uint64_t)ftello(file), path, repaired, faults, error);
-    fclose(file);
+    adcgs_operand from;
+    adcgs_status status;
+    ADCGS_TRY(adcgs_operand_open(&from, path, NULL, error));
+    if (adcgs_pipe_is(path))
+        status = adcgs_fail(error, ADCGS_ERR_IO, "%.160s: cannot be read twice, expected a file", from.name);
+    else
+        status = check(adcgs_operand_read_at, &from, adcgs_operand_size(&from), path, repaired, faults, error);
+    adcgs_operand_close(&from);
     return status;
 }

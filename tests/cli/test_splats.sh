@@ -108,10 +108,10 @@ expect 4 "s.adcgs: an adcgs stream, expected JSON" ./adcgs-join "$s" -o "$dir/x.
 expect 2 "s.adcgs is a stream and .*/scene is not: give the stream first" ./adcgs-eval "$dir/scene" "$s"
 printf '<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html lang="en">' >"$dir/page"
 for program in "adcgs-info" "adcgs-info --check" "adcgs-dec --md5" "adcgs-share -o $dir/x.html"; do
-    expect 4 "page: a page of adcgs-share, expected an adcgs stream" ./$program "$dir/page"
+    expect 4 "page: a page (HTML) without a stream, expected an adcgs stream" ./$program "$dir/page"
     expect 4 "scene: a folder, expected an adcgs stream: adcgs-enc" ./$program "$dir/scene"
 done
-expect 4 "page: a page of adcgs-share" ./adcgs-eval "$dir/page" "$dir/scene"
+expect 4 "page: a page (HTML) without a stream" ./adcgs-eval "$dir/page" "$dir/scene"
 printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\200\077\0\0\200\077\377\377\377\377\377\200\200\200' >"$dir/splat"
 for option in "" "--dataset splats"; do
     expect 4 "splat: splats (.splat), expected\|splat: splats (.splat), which is not read: convert" \

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Untrusted small control files, and texts of command lines. The first byte selects the kind: C, H, U a camera path, L a scene
- * file of future footage, P a script of the player, R requests for digests, A a table of another method, J the sweep.json of an
- * earlier sweep, G a grid, F a range of frames, N frames per second, Y the first line of Y4M, S settings of the trainer, O faults
- * of a scene, B a budget; H also the header lines of a web server.
+ * Untrusted small control files, and texts of command lines. The first byte selects the kind: C, H, U a camera path, W a page
+ * with a stream, L a scene file of future footage, P a script of the player, R requests for digests, A a table of another method,
+ * J the sweep.json of an earlier sweep, G a grid, F a range of frames, N frames per second, Y the first line of Y4M, S settings
+ * of the trainer, O faults of a scene, B a budget; H also the header lines of a web server.
  */
 #define _GNU_SOURCE
 
@@ -13,6 +13,7 @@
 #include "data/frames.h"
 #include "io/fps.h"
 #include "io/http_head.h"
+#include "io/page_stream.h"
 #include "io/y4m_shape.h"
 #include "layouts/scene_file.h"
 #include "play/script.h"
@@ -55,6 +56,27 @@ static adcgs_status read_sources(const char *path, adcgs_error *error)
     const adcgs_status status = adcgs_source_cameras_read(&cameras, &n, path, error);
     FUZZ_REQUIRE(status != ADCGS_OK || (n > 0 && cameras));
     adcgs_source_cameras_free(&cameras, n);
+    return status;
+}
+
+/** The stream of a page is the same read in order and from its end. */
+static adcgs_status read_page(const char *path, adcgs_error *error)
+{
+    adcgs_page_stream *page;
+    const adcgs_status status = adcgs_page_stream_open(&page, path, error);
+    const uint64_t size = status == ADCGS_OK ? adcgs_page_stream_size(page) : 0;
+    FUZZ_REQUIRE(status == ADCGS_OK ? size > 0 : !page);
+    uint8_t *const data = malloc((size_t)size + 1);
+    FUZZ_REQUIRE(data != NULL);
+    if (page)
+        FUZZ_REQUIRE(adcgs_page_stream_read(page, data, (size_t)size + 1) == (int64_t)size &&
+                     !strchr(adcgs_page_stream_name(page), '/'));
+    for (uint64_t at = size; at-- > 0 && at + 16 > size;) {
+        uint8_t one;
+        FUZZ_REQUIRE(adcgs_page_stream_read_at(page, at, &one, 1) == 1 && one == data[at]);
+    }
+    free(data);
+    adcgs_page_stream_close(&page);
     return status;
 }
 
@@ -117,7 +139,7 @@ static const struct kind {
 } kinds[] = {
     {'C', "path.json", read_camera_path}, {'H', "path.chan", read_camera_path}, {'U', "path.usda", read_camera_path},
     {'L', "scene.json", read_sources},    {'P', "script", read_script},         {'R', "requests", read_requests},
-    {'A', "table.csv", read_table},       {'J', "sweep.json", read_earlier},
+    {'A', "table.csv", read_table},       {'J', "sweep.json", read_earlier},    {'W', "page.html", read_page},
 };
 
 static void check(adcgs_status status, const adcgs_error *error)
