@@ -22,7 +22,7 @@ charts()
     scene=$2 name=$3
     wanted charts "${SCENES:-demo cross80 room hand}" "$scene" "$name" || return 0
     echo "charts: $name" >&2
-    ./adcgs-sweep "$scene" -o "$out/$name" -l "${LAMBDAS:-0.1,0.4}" --grid "iterations=${ITERATIONS:-400,1200,3600}" -t 1 \
+    ./adcgs-sweep "$scene" -o "$out/$name" -l "${LAMBDAS:-0.1,0.4}" --grid "iterations=${ITERATIONS:-400,1200,3600}" -T 1 \
         --set tiers=1 --seeds 1 --yardsticks none --resume >"$out/$name.txt" ||
         { echo "charts: $name failed" >&2; failed=1; return 0; }
     for chart in rate time time-moving bytes; do

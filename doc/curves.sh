@@ -53,7 +53,7 @@ curve()
         against=
     fi
     echo "curves: $folder" >&2
-    ./adcgs-sweep "$scene" -o "$folder" -l "$list" -n "${ITERATIONS:-3000}" --seeds "${SEEDS:-1}" -t 1 --yardsticks none \
+    ./adcgs-sweep "$scene" -o "$folder" -l "$list" -n "${ITERATIONS:-3000}" --seeds "${SEEDS:-1}" -T 1 --yardsticks none \
         --resume ${against:+--against "$against"} >"$folder.txt" || { echo "curves: $folder failed" >&2; failed=1; }
     [ -e "$folder/sweep.json" ] || return 0
     echo "| $title |$(points "$list" "$folder") $(rate bd_rate "$folder") | $(rate bd_rate_moving "$folder") |" >>"$out/curves.md"

@@ -25,7 +25,7 @@ sweep()
     folder=$1 scene=$2
     shift 2
     mkdir -p "$out/$folder"
-    ./adcgs-sweep "$scene" -o "$out/$folder" -l "${LAMBDAS:-0.1,0.4}" -n "${ITERATIONS:-1500}" -t 1 -j "${JOBS:-1}" --seeds "${SEEDS:-1}" \
+    ./adcgs-sweep "$scene" -o "$out/$folder" -l "${LAMBDAS:-0.1,0.4}" -n "${ITERATIONS:-1500}" -T 1 -j "${JOBS:-1}" --seeds "${SEEDS:-1}" \
         --yardsticks none --resume "$@" >"$out/$folder.txt"
 }
 

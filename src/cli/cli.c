@@ -156,9 +156,20 @@ static const adcgs_option *present_option(const adcgs_cli *cli, const adcgs_opti
     const adcgs_option *now = cli->options;
     if (option->kind != ADCGS_OPTION_FORMER)
         return option;
-    while (strcmp(now->name, option->value) != 0)
+    while (!now->name || strcmp(now->name, option->value) != 0)
         now++;
     return now;
+}
+
+/** Report a former name or letter. */
+static void note_former(const adcgs_cli *cli, const adcgs_option *given, const adcgs_option *now)
+{
+    const char letter[] = {'-', now->letter, ',', ' ', 0};
+    if (given->name)
+        adcgs_cli_note(cli, "--%s is now called --%s; the next release drops the former name", given->name, now->name);
+    else
+        adcgs_cli_note(cli, "-%c is now %s--%s; the next release drops the former letter", given->letter,
+                       now->letter ? letter : "", now->name);
 }
 
 static int option_wrong(const adcgs_cli *cli, const adcgs_option *option, const char *text)
@@ -221,14 +232,15 @@ void adcgs_options_add(adcgs_option_table *table, const adcgs_option *group, siz
 }
 
 /** Make getopt_long()'s two tables from ours. Codes above UCHAR_MAX are options without a letter. */
-static size_t getopt_tables(const adcgs_cli *cli, struct option *longs, char *letters)
+static void getopt_tables(const adcgs_cli *cli, struct option *longs, char *letters)
 {
-    size_t n = ADCGS_MIN(cli->n_options, (size_t)ADCGS_OPTIONS_MAX);
+    size_t n = 0;
     *letters++ = ':'; /* reports a missing value as ':' */
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < ADCGS_MIN(cli->n_options, (size_t)ADCGS_OPTIONS_MAX); i++) {
         const adcgs_option *option = &cli->options[i];
         const int takes = present_option(cli, option)->kind != ADCGS_OPTION_FLAG;
-        longs[i] = (struct option){option->name, takes ? required_argument : no_argument, NULL, UCHAR_MAX + 1 + (int)i};
+        if (option->name)
+            longs[n++] = (struct option){option->name, takes ? required_argument : no_argument, NULL, UCHAR_MAX + 1 + (int)i};
         if (option->letter) {
             *letters++ = option->letter;
             if (takes)
@@ -240,7 +252,6 @@ static size_t getopt_tables(const adcgs_cli *cli, struct option *longs, char *le
     longs[n + 2] = (struct option){cli->quiet ? "quiet" : NULL, no_argument, NULL, 'q'};
     longs[n + 3] = (struct option){NULL, 0, NULL, 0};
     memcpy(letters, cli->quiet ? "hVq" : "hV", cli->quiet ? 4 : 3);
-    return n;
 }
 
 static const adcgs_option *find_option(const adcgs_cli *cli, int code)
@@ -300,7 +311,7 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
             return wrong_option(cli, word);
         const adcgs_option *const given = find_option(cli, code), *const option = present_option(cli, given);
         if (given != option)
-            adcgs_cli_note(cli, "--%s is now called --%s; the next release drops the former name", given->name, option->name);
+            note_former(cli, given, option);
         if (option_set(option, optarg))
             return option_wrong(cli, option, optarg);
     }

@@ -21,13 +21,14 @@ typedef enum adcgs_option_kind {
     ADCGS_OPTION_SECONDS, /**< target: double; suffixes ms, s, m, min and h */
     ADCGS_OPTION_PAIR,    /**< target: int[2]; WIDTHxHEIGHT */
     ADCGS_OPTION_CHOICE,  /**< target: int, index into choices */
-    ADCGS_OPTION_FORMER   /**< former name of the option called `value`, accepted with a remark; not listed */
+    ADCGS_OPTION_FORMER   /**< former name, or without a name former letter, of the option called `value`: accepted with a remark,
+                          not listed */
 } adcgs_option_kind;
 
 /** One option. A target keeps its value if the option is not given, so defaults are set there. */
 typedef struct adcgs_option {
-    const char *name; /**< long name without dashes */
-    char letter;      /**< short name, 0: none */
+    const char *name; /**< long name without dashes; NULL: a former letter */
+    char letter;      /**< short name, 0: none; one meaning in all programs (doc/hacking/add-an-option.md) */
     adcgs_option_kind kind;
     void *target;
     double min, max;            /**< inclusive range of INT, SIZE, REAL, SECONDS and PAIR */

@@ -117,6 +117,7 @@ static void add_output_options(adcgs_option_table *out, arguments *a)
          .choices = formats,
          .help = "format of the images: png or ppm (default: png)"},
         {.name = "threads",
+         .letter = 'T',
          .kind = ADCGS_OPTION_INT,
          .target = &a->threads,
          .min = 0,

@@ -53,7 +53,8 @@ static void list_options(adcgs_option_table *out, settings *s)
          NULL, NULL},
         {"scale", 0, ADCGS_OPTION_INT, &s->scale, 1, 64, "S",
          "divisor of the image size for the measurement, an integer\n(default: as for the stream's training)", NULL, NULL},
-        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
+        {"layers", 'L', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
+        {.letter = 'l', .kind = ADCGS_OPTION_FORMER, .value = "layers"},
         {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "tiers of the stream to render; fewer give a coarser image", NULL,
          NULL},
         {"images", 0, ADCGS_OPTION_FILE, &s->images, 0, 0, "DIR", "folder for the decoded views as PNG", NULL, NULL},
@@ -65,7 +66,7 @@ static void list_options(adcgs_option_table *out, settings *s)
          NULL, NULL},
         {"scene-background", 0, ADCGS_OPTION_FLAG, &s->as_is, 0, 0, NULL,
          "composite images with alpha onto the scene's background\ninstead of the stream's", NULL, NULL},
-        {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads (default: one per CPU)", NULL, NULL},
+        {"threads", 'T', ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads (default: one per CPU)", NULL, NULL},
         {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; no effect on the figures",
          adcgs_cpu_names, NULL},
         {"metrics", 0, ADCGS_OPTION_STRING, &s->metrics, 0, 0, "LIST",
@@ -73,7 +74,7 @@ static void list_options(adcgs_option_table *out, settings *s)
          "fitted-dynamic-psnr, static-variance and flicker",
          NULL, NULL},
         {"csv", 0, ADCGS_OPTION_FILE, &s->csv, 0, 0, "FILE", "table with a row for each view; - prints it", NULL, NULL},
-        {"json", 0, ADCGS_OPTION_FLAG, &s->json, 0, 0, NULL, "print one JSON object", NULL, NULL},
+        {"json", 'J', ADCGS_OPTION_FLAG, &s->json, 0, 0, NULL, "print one JSON object", NULL, NULL},
     };
     adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }

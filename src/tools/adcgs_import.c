@@ -172,14 +172,19 @@ static void add_camera_options(adcgs_option_table *out, arguments *a)
          .value = "PROGRAM",
          .help = "COLMAP's program (default: colmap on the path)"},
         {.name = "threads",
-         .letter = 't',
+         .letter = 'T',
          .kind = ADCGS_OPTION_INT,
          .target = &o->threads,
          .min = 0,
          .max = 256,
          .value = "N",
          .help = "threads of COLMAP (default: one per CPU)"},
-        {.name = "json", .kind = ADCGS_OPTION_FLAG, .target = &a->json, .help = "print the result as one JSON object on stdout"},
+        {.letter = 't', .kind = ADCGS_OPTION_FORMER, .value = "threads"},
+        {.name = "json",
+         .letter = 'J',
+         .kind = ADCGS_OPTION_FLAG,
+         .target = &a->json,
+         .help = "print the result as one JSON object on stdout"},
     };
     adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }

@@ -255,10 +255,12 @@ int main(int argc, char **argv)
 {
     settings s = {.input = NULL};
     const adcgs_option options[] = {
-        {"json", 'j', ADCGS_OPTION_FLAG, &s.json, 0, 0, NULL, "print one JSON object", NULL, NULL},
+        {"json", 'J', ADCGS_OPTION_FLAG, &s.json, 0, 0, NULL, "print one JSON object", NULL, NULL},
+        {.letter = 'j', .kind = ADCGS_OPTION_FORMER, .value = "json"},
         {"bits", 'b', ADCGS_OPTION_FLAG, &s.bits, 0, 0, NULL, "list every chunk with its bits", NULL, NULL},
-        {"trace", 't', ADCGS_OPTION_FLAG, &s.trace, 0, 0, NULL, "print bit position, name and value of every syntax\nelement",
-         NULL, NULL},
+        {"trace", 0, ADCGS_OPTION_FLAG, &s.trace, 0, 0, NULL, "print bit position, name and value of every syntax\nelement", NULL,
+         NULL},
+        {.letter = 't', .kind = ADCGS_OPTION_FORMER, .value = "trace"},
         {"digest", 'd', ADCGS_OPTION_FLAG, &s.digest, 0, 0, NULL, "print the digest of each segment's model", NULL, NULL},
         {"why", 'w', ADCGS_OPTION_FLAG, &s.why, 0, 0, NULL, "explain the size of the stream", NULL, NULL},
         {"points", 0, ADCGS_OPTION_FILE, &s.points, 0, 0, "FILE",

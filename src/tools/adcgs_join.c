@@ -167,7 +167,8 @@ static int parse(adcgs_cli *cli, join_options *o, int argc, char **argv)
          "of the segment it is trained from (0: none), its state (done,\n"
          "begun, ready, waits for the other, or bad), and its cost in\nseconds",
          NULL, NULL},
-        {"threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N", "threads (default: one per CPU)", NULL, NULL},
+        {"threads", 'T', ADCGS_OPTION_INT, &o->threads, 0, 256, "N", "threads (default: one per CPU)", NULL, NULL},
+        {.letter = 't', .kind = ADCGS_OPTION_FORMER, .value = "threads"},
     };
     int first;
     cli->options = options;

@@ -92,7 +92,8 @@ static void add_view_options(adcgs_option_table *out, adcgs_dec_settings *s)
 static void add_decoding_options(adcgs_option_table *out, adcgs_dec_settings *s)
 {
     const adcgs_option table[] = {
-        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
+        {"layers", 'L', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
+        {.letter = 'l', .kind = ADCGS_OPTION_FORMER, .value = "layers"},
         {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "tiers of the stream to render; fewer give a coarser image", NULL,
          NULL},
         {"budget", 0, ADCGS_OPTION_STRING, &s->budget_text, 0, 0, "B",
@@ -117,7 +118,7 @@ static void add_program_options(adcgs_option_table *out, adcgs_dec_settings *s)
         {"play", 0, ADCGS_OPTION_FLAG, &s->play, 0, 0, NULL, "show the stream in a window, with a movable camera", NULL, NULL},
         {"script", 0, ADCGS_OPTION_FILE, &s->script, 0, 0, "COMMANDS", "with --play: file of commands that replace the user's",
          NULL, NULL},
-        {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads (default: one per CPU)", NULL, NULL},
+        {"threads", 'T', ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads (default: one per CPU)", NULL, NULL},
         {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; no effect on the frames",
          adcgs_cpu_names, NULL},
         {"conceal", 0, ADCGS_OPTION_FLAG, &s->config.conceal, 0, 0, NULL,

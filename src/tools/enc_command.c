@@ -27,8 +27,9 @@ static void add_result_options(adcgs_option_table *out, adcgs_enc_options *o)
          "loss per mebibyte of features and networks; a larger value\nmakes smaller files (default: the preset's, times the\n"
          "images' contrast over 0.22)",
          NULL, &o->has_lambda},
-        {"size", 's', ADCGS_OPTION_SIZE, &o->size, ADCGS_TARGET_SIZE_MIN, ADCGS_TARGET_SIZE_MAX, "BYTES",
+        {"size", 'S', ADCGS_OPTION_SIZE, &o->size, ADCGS_TARGET_SIZE_MIN, ADCGS_TARGET_SIZE_MAX, "BYTES",
          "maximum file size, reached within 3 % (150k, 1.5M, 2MiB);\nreplaces --lambda", NULL, &o->has_size},
+        {.letter = 's', .kind = ADCGS_OPTION_FORMER, .value = "size"},
         {"psnr", 0, ADCGS_OPTION_REAL, &o->psnr, ADCGS_TARGET_PSNR_MIN, ADCGS_TARGET_PSNR_MAX, "DB",
          "target mean PSNR of the training views, decoded from the\nfile, dB, +/- 0.1; the file is as small as it allows; test\n"
          "views are never used",
@@ -163,13 +164,14 @@ static void add_machine_options(adcgs_option_table *out, adcgs_enc_options *o)
          "maximum memory of images, bytes (2G); the others are kept in\n"
          "a file in TMPDIR (default: half of the machine's); no effect\non the result",
          NULL, NULL},
-        {"threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N", "threads (default: one per CPU); no effect on the result",
+        {"threads", 'T', ADCGS_OPTION_INT, &o->threads, 0, 256, "N", "threads (default: one per CPU); no effect on the result",
          NULL, NULL},
+        {.letter = 't', .kind = ADCGS_OPTION_FORMER, .value = "threads"},
         {"cpu", 0, ADCGS_OPTION_CHOICE, &o->cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)",
          adcgs_cpu_names, NULL},
         {"bf16", 0, ADCGS_OPTION_FLAG, &o->bf16, 0, 0, NULL,
          "train the networks of the rendered values in bf16, which is\nfaster; needs a CPU with AVX512-BF16", NULL, NULL},
-        {"json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL},
+        {"json", 'J', ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL},
     };
     adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }

@@ -34,6 +34,8 @@ static const char *find_other(const adcgs_cli *cli, const adcgs_enc_options *o, 
 {
     for (size_t i = 0; i < cli->n_options; i++) {
         const adcgs_option *const option = &cli->options[i];
+        if (option->kind == ADCGS_OPTION_FORMER)
+            continue;
         const size_t at = (size_t)((const char *)option->target - (const char *)o);
         const int given =
             option->given ? *option->given : memcmp(option->target, (const char *)before + at, size_of(option->kind)) != 0;

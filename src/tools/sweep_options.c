@@ -176,6 +176,8 @@ static void take_words(adcgs_sweep_words *w, const adcgs_option *options, size_t
 {
     for (size_t i = 0; i < n && w->n < ADCGS_SWEEP_OPTIONS; i++) {
         const adcgs_option *const o = &options[i];
+        if (o->kind == ADCGS_OPTION_FORMER)
+            continue;
         const int is_text = o->kind == ADCGS_OPTION_STRING || o->kind == ADCGS_OPTION_FILE;
         const char *value = NULL;
         const int is_given = is_text ? *(const char *const *)o->target != NULL : o->given ? *o->given : *(const int *)o->target;
@@ -282,8 +284,9 @@ static size_t list_options(adcgs_option out[ADCGS_SWEEP_OPTIONS], adcgs_sweep_re
          "iterations of training (default: the preset's)", NULL, NULL},
         {"jobs", 'j', ADCGS_OPTION_INT, &request->jobs, 1, 64, "N", "number of concurrent encoders (default: 1)", NULL,
          &g->has_jobs},
-        {"threads", 't', ADCGS_OPTION_INT, &sweep->threads, 0, 256, "N", "threads of each encoder (default: one per CPU)", NULL,
+        {"threads", 'T', ADCGS_OPTION_INT, &sweep->threads, 0, 256, "N", "threads of each encoder (default: one per CPU)", NULL,
          NULL},
+        {.letter = 't', .kind = ADCGS_OPTION_FORMER, .value = "threads"},
         {"resume", 0, ADCGS_OPTION_FLAG, &sweep->resume, 0, 0, NULL,
          "keep the finished runs of an earlier sweep with the same\nsettings, and continue the others", NULL, NULL},
         {"list", 0, ADCGS_OPTION_FLAG, &request->list, 0, 0, NULL,

@@ -75,9 +75,9 @@ int main(int argc, char **argv)
          NULL, NULL},
         {"cpu", 'c', ADCGS_OPTION_CHOICE, &s.cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)",
          adcgs_cpu_names, NULL},
-        {"threads", 't', ADCGS_OPTION_INT, &s.b.threads, 1, 256, "N", "threads at most (default: one per CPU)", NULL, NULL},
+        {"threads", 'T', ADCGS_OPTION_INT, &s.b.threads, 1, 256, "N", "threads at most (default: one per CPU)", NULL, NULL},
         {"turns", 'r', ADCGS_OPTION_INT, &s.b.rounds, 3, 101, "N", "turns of each item (default 15)", NULL, NULL},
-        {"scenes", 's', ADCGS_OPTION_STRING, &s.scenes, 0, 0, "DIR",
+        {"scenes", 0, ADCGS_OPTION_STRING, &s.scenes, 0, 0, "DIR",
          "folder of the training scene, generated if missing (default bench-scenes)", NULL, NULL},
         {"quick", 'q', ADCGS_OPTION_FLAG, &s.quick, 0, 0, NULL, "one size, one number of splats", NULL, NULL},
     };

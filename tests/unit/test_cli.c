@@ -102,6 +102,9 @@ static int parse(values *v, const char *const *words, int *first)
         {"number", 0, ADCGS_OPTION_INT, &v->number, 1, 9, "N", "a number", NULL, &v->given},
         {"size", 's', ADCGS_OPTION_SIZE, &v->size, 1, 1e6, "BYTES", "a size", NULL, NULL},
         {"colour", 0, ADCGS_OPTION_CHOICE, &v->choice, 0, 0, "NAME", "a name", choices, NULL},
+        {.letter = 'n', .kind = ADCGS_OPTION_FORMER, .value = "number"},
+        {.letter = 'g', .kind = ADCGS_OPTION_FORMER, .value = "flag"},
+        {.name = "amount", .letter = 'a', .kind = ADCGS_OPTION_FORMER, .value = "number"},
     };
     const adcgs_cli cli = {.program = "prog",
                            .operands = "FILE",
@@ -140,6 +143,14 @@ static void test_options(void **state)
     assert_string_equal(v.text, "x y");
     assert_int_equal(PARSE(&v, &first, "-t", "-", "file", "--", "-f"), -1);
     assert_string_equal(v.text, "-");
+    v = (values){0};
+    assert_int_equal(PARSE(&v, &first, "-gn", "4", "file"), -1); /* former letters */
+    assert_true(v.flag == 1 && v.number == 4 && v.given);
+    assert_int_equal(PARSE(&v, &first, "--amount=6", "file"), -1);
+    assert_int_equal(v.number, 6);
+    assert_int_equal(PARSE(&v, &first, "file", "-a7"), -1);
+    assert_int_equal(v.number, 7);
+    assert_int_equal(PARSE(&v, &first, "-n", "10", "file"), 2);
     int quiet = 0;
     assert_int_equal(PARSE(&v, &first, "-q", "file"), 2); /* only programs with this option accept it */
     v.quiet = &quiet;
