@@ -244,6 +244,27 @@ static void add_training(adcgs_poses *poses, const adcgs_import_job *job, const 
     }
 }
 
+/** Reads the points, and measures the angles between the images that see them. */
+static adcgs_status measure_points(adcgs_colmap *model, const adcgs_colmap_place *place, const adcgs_import_job *job)
+{
+    adcgs_colmap_angles angles;
+    adcgs_colmap_centre *centre = malloc((model->n_images + 1) * sizeof *centre);
+    if (!centre)
+        return no_memory(job);
+    for (size_t i = 0; i < model->n_images; i++) {
+        centre[i].id = model->images[i].id;
+        for (int a = 0; a < 3; a++)
+            centre[i].at[a] = model->images[i].cam_to_world[4 * a + 3];
+    }
+    adcgs_colmap_angles_init(&angles, centre, model->n_images);
+    model->angles = &angles;
+    const adcgs_status status = adcgs_colmap_load(model, place, ADCGS_COLMAP_POINTS, job->error);
+    model->angles = NULL;
+    job->report->angle = adcgs_colmap_angles_median(&angles);
+    adcgs_colmap_angles_clear(&angles);
+    return status;
+}
+
 /** Reads the points that training views see. */
 static adcgs_status read_points(adcgs_poses *poses, const adcgs_import_job *job, const adcgs_colmap_place *place)
 {
@@ -254,7 +275,7 @@ static adcgs_status read_points(adcgs_poses *poses, const adcgs_import_job *job,
         if (!poses->posed[i].is_test)
             add_training(poses, job, &poses->posed[i]);
     qsort(model->training, model->n_training, sizeof *model->training, by_id);
-    ADCGS_TRY(adcgs_colmap_load(model, place, ADCGS_COLMAP_POINTS, job->error));
+    ADCGS_TRY(measure_points(model, place, job));
     job->report->points = model->points.n;
     job->report->error = model->tracked ? model->deviation / (double)model->tracked : 0.0;
     job->report->track = model->tracked ? (double)model->seen / (double)model->tracked : 0.0;

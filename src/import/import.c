@@ -6,6 +6,7 @@
 
 #include "data/paths.h"
 #include "import/colmap_run.h"
+#include "import/pose_judge.h"
 #include "import/scene_write.h"
 #include "io/atomic.h"
 #include "io/file.h"
@@ -179,7 +180,9 @@ static adcgs_status make_scene(adcgs_import_job *job, const adcgs_colmap_program
     ADCGS_TRY(adcgs_import_pictures(job));
     ADCGS_TRY(adcgs_import_poses(job, program));
     ADCGS_TRY(adcgs_poses_read(&poses, job));
-    adcgs_status status = job->sources.kind == ADCGS_FOOTAGE_RIG ? adcgs_import_videos(job) : ADCGS_OK;
+    adcgs_status status = adcgs_import_judge(job);
+    if (status == ADCGS_OK && job->sources.kind == ADCGS_FOOTAGE_RIG)
+        status = adcgs_import_videos(job);
     if (status == ADCGS_OK)
         status = adcgs_import_write(&poses, job);
     adcgs_poses_clear(&poses);

@@ -30,6 +30,7 @@ typedef struct adcgs_import_options {
     int test_every;     /**< every test_every-th view or fixed camera is for testing; 0: none */
     int lens;           /**< adcgs_import_lens */
     int own_lens;       /**< each camera of a rig has intrinsics of its own */
+    int anyway;         /**< accepts poses without parallax, and of few images */
     int threads;        /**< for COLMAP; 0: one per processor */
     adcgs_fps fps;      /**< of images taken one after another; unknown: all at one time */
 } adcgs_import_options;
@@ -43,11 +44,20 @@ typedef struct adcgs_import_report {
     uint32_t points;          /**< initial points for training */
     double error;             /**< mean reprojection error in pixels */
     double track;             /**< mean number of images that see a point */
+    double angle;             /**< median triangulation angle of points, degrees */
     double spread;            /**< for a rig: spread of its cameras' poses over time, relative to the cameras' mean distance */
     double seconds;           /**< of the footage */
     int width, height;        /**< of the first image */
     int is_numbered;          /**< images without times whose names only count: possibly frames of a video */
 } adcgs_import_report;
+
+/**
+ * Median triangulation angle, in degrees, below which the depth of points is mostly noise. A step of half a
+ * metre to the side at a distance of 20 metres gives 1.4.
+ */
+#define ADCGS_IMPORT_ANGLE_LEAST 1.5
+/** Least share of the images, or fixed cameras, with a pose. */
+#define ADCGS_IMPORT_POSED_LEAST 0.5
 
 /**
  * Returns ADCGS_ERR_USAGE for conflicting operands or an existing output, ADCGS_ERR_UNSUPPORTED without COLMAP, ADCGS_ERR_DATA

@@ -141,7 +141,7 @@ adcgs_status adcgs_colmap_binary_points(adcgs_colmap *model, uint8_t *data, size
         if (track.seen > left(&c) / TRACK_BYTES)
             return ends_early(model);
         for (uint64_t i = 0; i < track.seen; i++) {
-            track.training += (uint64_t)adcgs_colmap_is_training(model, take32(&c));
+            adcgs_colmap_add_seen(model, position, take32(&c), &track);
             c.at += 4;
         }
         ADCGS_TRY(adcgs_colmap_add_point(model, position, colour, &track));

@@ -254,6 +254,13 @@ int adcgs_colmap_is_training(const adcgs_colmap *model, uint32_t image)
     return model->n_training && bsearch(&image, model->training, model->n_training, sizeof image, compare_ids);
 }
 
+void adcgs_colmap_add_seen(const adcgs_colmap *model, const double position[3], uint32_t image, adcgs_colmap_track *track)
+{
+    track->training += (uint64_t)adcgs_colmap_is_training(model, image);
+    if (model->angles)
+        adcgs_colmap_angles_see(model->angles, position, image);
+}
+
 adcgs_status adcgs_colmap_add_point(adcgs_colmap *model, const double position[3], const uint64_t colour[3],
                                     const adcgs_colmap_track *track)
 {
@@ -269,6 +276,10 @@ adcgs_status adcgs_colmap_add_point(adcgs_colmap *model, const double position[3
         model->seen += track->seen;
         model->deviation += track->deviation;
     }
+    if (model->angles)
+        adcgs_colmap_angles_end_point(model->angles);
+    if (model->angles && model->angles->failed)
+        return adcgs_colmap_bad(model, ADCGS_ERR_MEMORY, "out of memory for angles");
     if (model->training && track->seen && track->training < 2)
         return ADCGS_OK;
     for (int a = 0; a < 3; a++) {

@@ -5,6 +5,7 @@
 
 #include "data/lens.h"
 #include "io/points.h"
+#include "layouts/colmap_angles.h"
 
 #define ADCGS_COLMAP_PARAMS_MAX 12
 
@@ -28,6 +29,7 @@ typedef struct adcgs_colmap {
     double deviation;       /**< sum of the mean reprojection errors of these points, in pixels */
     uint32_t *training;     /**< ids of the training images, ascending; NULL: unknown */
     size_t n_training;
+    adcgs_colmap_angles *angles; /**< receives the angles of points as they are read; NULL: not wanted */
     /* Position of the reader, for messages. */
     const char *path, *unit; /**< unit: "line", or the kind of element ("camera") */
     uint64_t index;
@@ -55,6 +57,8 @@ typedef struct adcgs_colmap_track {
     uint64_t seen, training; /**< images, and the number of training images among them */
 } adcgs_colmap_track;
 
+/** Adds an image to the track of a point. */
+void adcgs_colmap_add_seen(const adcgs_colmap *model, const double position[3], uint32_t image, adcgs_colmap_track *track);
 /** Leaves out a point seen by fewer than two training images, if tracks are known. There must be room for the point. */
 adcgs_status adcgs_colmap_add_point(adcgs_colmap *model, const double position[3], const uint64_t colour[3],
                                     const adcgs_colmap_track *track);

@@ -202,14 +202,14 @@ adcgs_status adcgs_colmap_text_images(adcgs_colmap *model, uint8_t *data, size_t
 }
 
 /** Counts the images of a track, and the training images among them. */
-static adcgs_status take_track(const adcgs_colmap *model, cursor *c, adcgs_colmap_track *track)
+static adcgs_status take_track(const adcgs_colmap *model, cursor *c, const double position[3], adcgs_colmap_track *track)
 {
     for (skip_blanks(c); *c->at; skip_blanks(c)) {
         uint64_t image, feature;
         ADCGS_TRY(take_integer(model, c, "TRACK", UINT32_MAX, &image));
         ADCGS_TRY(take_integer(model, c, "TRACK", UINT32_MAX, &feature));
         track->seen++;
-        track->training += (uint64_t)adcgs_colmap_is_training(model, (uint32_t)image);
+        adcgs_colmap_add_seen(model, position, (uint32_t)image, track);
     }
     return ADCGS_OK;
 }
@@ -233,7 +233,7 @@ adcgs_status adcgs_colmap_text_points(adcgs_colmap *model, uint8_t *data, size_t
         for (int a = 0; a < 3; a++)
             ADCGS_TRY(take_integer(model, &c, "R, G, B", 255, &colour[a]));
         ADCGS_TRY(take_numbers(model, &c, "ERROR", &track.deviation, 1));
-        ADCGS_TRY(take_track(model, &c, &track));
+        ADCGS_TRY(take_track(model, &c, position, &track));
         ADCGS_TRY(adcgs_colmap_add_point(model, position, colour, &track));
     }
     return ADCGS_OK;

@@ -34,7 +34,8 @@ static void print_text(const adcgs_import_report *r, const char *output)
         printf(": %u of %u static cameras, %.2f s; %dx%d\n", r->found, r->cameras, r->seconds, r->width, r->height);
     else
         printf(": %u of %u images, %.2f s; %dx%d\n", r->posed, r->pictures, r->seconds, r->width, r->height);
-    printf("poses: %u points, %.2f pixels off on average, each in %.1f images", r->points, r->error, r->track);
+    printf("poses: %u points, %.2f pixels off on average, each in %.1f images, %.2g degrees apart", r->points, r->error, r->track,
+           r->angle);
     if (r->cameras)
         printf("; poses of a camera %.2g %% apart", 100.0 * r->spread);
     printf("\nnext: adcgs-enc %s/scene.json -o FILE\n", output);
@@ -58,6 +59,7 @@ static adcgs_status print_json(const adcgs_import_report *r, const char *output,
     adcgs_json_int(&j, "points", r->points);
     adcgs_json_real(&j, "reprojection_error", r->error);
     adcgs_json_real(&j, "track_length", r->track);
+    adcgs_json_real(&j, "angle", r->angle);
     adcgs_json_real(&j, "seconds", r->seconds);
     adcgs_json_int(&j, "width", r->width);
     adcgs_json_int(&j, "height", r->height);
@@ -82,6 +84,11 @@ static void warn(const adcgs_cli *cli, const adcgs_import_report *r)
                        "points are %.1f pixels off on average, expected less than %g: poses or lens are inexact; try "
                        "another --lens, or mask moving regions",
                        r->error, ERROR_FINE);
+    if (r->points && r->angle < ADCGS_IMPORT_ANGLE_LEAST)
+        adcgs_cli_note(cli,
+                       "the camera hardly moves sideways: directions to a point are %.2g degrees apart, expected %g or more; "
+                       "depth will be wrong",
+                       r->angle, ADCGS_IMPORT_ANGLE_LEAST);
     if (r->track < TRACK_FINE)
         adcgs_cli_note(cli, "a point is in %.1f images on average, expected %g or more: take images with more overlap", r->track,
                        TRACK_FINE);
@@ -159,6 +166,10 @@ static void add_camera_options(adcgs_option_table *out, arguments *a)
          .value = "KIND",
          .help = "radial, pinhole, opencv or fisheye (default radial)"},
         {.name = "own-lens", .kind = ADCGS_OPTION_FLAG, .target = &o->own_lens, .help = "an own lens for each camera of a rig"},
+        {.name = "anyway",
+         .kind = ADCGS_OPTION_FLAG,
+         .target = &o->anyway,
+         .help = "accept poses of less than half of the images, and of a\ncamera that hardly moves sideways"},
         {.name = "test",
          .kind = ADCGS_OPTION_INT,
          .target = &o->test_every,

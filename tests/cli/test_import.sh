@@ -31,7 +31,7 @@ stem=${first##*/} stem=${stem%.*}
 n=$(find "$pictures" -type f | wc -l)
 import 0 'names are plain numbers' "$pictures"
 grep -q "^$dir/s: $n of $n images, 0.00 s; 24x16$" "$dir/out" || { bad "report"; cat "$dir/out"; }
-grep -q '^poses: 20 points, 0.50 pixels off on average, each in 4.0 images$' "$dir/out" || { bad "quality"; cat "$dir/out"; }
+grep -q '^poses: 20 points, 0.50 pixels off on average, each in 4.0 images, 8.5 degrees apart$' "$dir/out" || { bad "quality"; cat "$dir/out"; }
 none "$dir/s.importing"
 none "$dir/s/sparse"
 none "$dir/s/colmap.log"
@@ -133,6 +133,13 @@ echo old >"$dir/s.importing/images/camera1/$stem.png"
 import 0 '' --fps 10 "$pictures"
 grep -rq old "$dir/s/images" && bad "resumed with footage of other options"
 FAKE_HOW=still import 4 'no two images have enough parallax: .*choose a longer piece.*s.importing/colmap.log' "$pictures"
+# A pan, and a reconstruction of few images, make a scene only with --anyway.
+FAKE_HOW=pan import 4 'the camera hardly moves sideways: .* within 0.86 degrees, expected 1.5 or more: walk round the subject, or choose a longer piece; --anyway makes a scene$' "$pictures"
+none "$dir/s"
+FAKE_HOW=pan import 0 'hardly moves sideways' --anyway "$pictures"
+FAKE_HOW=third import 4 "only $((n / 3)) of $n images have a place in space, expected half of them or more: photograph .*--anyway makes a scene of these $((n / 3))$" "$pictures"
+FAKE_HOW=third import 4 "only $((n / 3)) of $n frames have a place in space, .*: film slowly" --fps 10 "$pictures"
+FAKE_HOW=third import 0 "no pose found for $((n - n / 3)) of $n images" --anyway "$pictures"
 FAKE_HOW=none import 4 'COLMAP found no cameras' "$pictures"
 echo mine >"$dir/s.importing/images/camera1/more.txt"
 FAKE_HOW=few import 4 "COLMAP found where 2 of $n images were, expected at least 3" "$pictures"
