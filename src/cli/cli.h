@@ -137,6 +137,8 @@ void adcgs_progress_init(adcgs_progress *progress, const adcgs_cli *cli);
  * 25 seconds.
  */
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCGS_PRINTF(2, 3);
+/** Format the time left for a progress line, "  1:05 left"; "" if seconds is NaN. Returns text or "". */
+const char *adcgs_progress_eta(double seconds, char text[32]);
 /** Erase the line; call before any other message and at the end. */
 void adcgs_progress_clear(adcgs_progress *progress);
 /**

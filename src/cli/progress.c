@@ -10,6 +10,7 @@
 #include "cli/text.h"
 
 #include <errno.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -91,6 +92,16 @@ void adcgs_progress_clear(adcgs_progress *progress)
     progress->shown = 0;
     progress->said[0] = 0;
     unlock(progress);
+}
+
+const char *adcgs_progress_eta(double seconds, char text[32])
+{
+    const unsigned whole = seconds >= 0 && seconds < 1e9 ? (unsigned)seconds : 0;
+    if (whole >= 3600)
+        snprintf(text, 32, "  %u:%02u:%02u left", whole / 3600, whole / 60 % 60, whole % 60);
+    else
+        snprintf(text, 32, "  %u:%02u left", whole / 60, whole % 60);
+    return isnan(seconds) ? "" : text;
 }
 
 /* ---- The thread ---- */

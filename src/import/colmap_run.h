@@ -9,6 +9,7 @@
 typedef struct adcgs_colmap_program {
     int is_known;   /**< its help text was understood */
     int is_renamed; /**< since 3.12 some options have other names */
+    int has_glomap; /**< glomap is installed, and the options allow it */
 } adcgs_colmap_program;
 
 /** Checks, before any long step, that the program exists. ADCGS_ERR_UNSUPPORTED, with advice, if it does not. */

@@ -12,7 +12,6 @@
 #include "io/file.h"
 
 #include <errno.h>
-#include <ftw.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,31 +30,6 @@ static adcgs_status no_memory(const adcgs_import_job *job)
 }
 
 /* ---- The folder ---- */
-
-static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *place)
-{
-    (void)status;
-    (void)kind;
-    (void)place;
-    return remove(path);
-}
-
-/** Removes a whole folder, without following links. */
-static adcgs_status remove_tree(const char *path, adcgs_error *error)
-{
-    if (nftw(path, remove_entry, 8, FTW_DEPTH | FTW_PHYS) && errno != ENOENT)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot remove: %s", path, strerror(errno));
-    return ADCGS_OK;
-}
-
-static adcgs_status remove_below(const adcgs_import_job *job, const char *name)
-{
-    char *path;
-    ADCGS_TRY(adcgs_import_path(&path, job, name));
-    const adcgs_status status = remove_tree(path, job->error);
-    free(path);
-    return status;
-}
 
 static void stamp_file(FILE *out, const char *path)
 {
@@ -107,12 +81,12 @@ static adcgs_status open_folder(const adcgs_import_job *job, const char *stamp, 
         return adcgs_fail(job->error, ADCGS_ERR_USAGE, "%s: exists and was not made by an unfinished import; move it away",
                           job->folder);
     if (adcgs_is_there(job->folder) && !goes_on(stamp, text, bytes))
-        ADCGS_TRY(remove_tree(job->folder, job->error));
+        ADCGS_TRY(adcgs_import_remove_tree(job->folder, job->error));
     if (mkdir(job->folder, 0777) && errno != EEXIST)
         return adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", job->folder, strerror(errno));
     ADCGS_TRY(adcgs_atomic_save(stamp, text, bytes, job->error));
-    ADCGS_TRY(remove_below(job, "sparse")); /* a new log for a new run */
-    return remove_below(job, "colmap.log");
+    ADCGS_TRY(adcgs_import_remove(job, "sparse")); /* a new log for a new run */
+    return adcgs_import_remove(job, "colmap.log");
 }
 
 static adcgs_status begin(const adcgs_import_job *job)
@@ -132,7 +106,7 @@ static adcgs_status begin(const adcgs_import_job *job)
 static adcgs_status remove_stamp(const adcgs_import_job *job)
 {
     char *stamp = adcgs_path("%s/" STAMP, job->options->output);
-    const adcgs_status status = stamp ? remove_tree(stamp, job->error) : no_memory(job);
+    const adcgs_status status = stamp ? adcgs_import_remove_tree(stamp, job->error) : no_memory(job);
     free(stamp);
     return status;
 }
@@ -142,15 +116,15 @@ static adcgs_status finish(const adcgs_import_job *job)
 {
     static const char *const scaffolding[] = {"sparse", "database.db", "database.db-shm", "database.db-wal", "colmap.log"};
     if (job->sources.kind == ADCGS_FOOTAGE_RIG)
-        ADCGS_TRY(remove_below(job, "images"));
+        ADCGS_TRY(adcgs_import_remove(job, "images"));
     for (uint32_t i = 0; job->sources.kind == ADCGS_FOOTAGE_RIG && job->options->masks && i < job->sources.n_cameras; i++) {
         char *name = adcgs_path("masks/%s", job->sources.cameras[i].folder);
-        const adcgs_status status = name ? remove_below(job, name) : no_memory(job);
+        const adcgs_status status = name ? adcgs_import_remove(job, name) : no_memory(job);
         free(name);
         ADCGS_TRY(status);
     }
     for (size_t i = 0; i < ADCGS_COUNTOF(scaffolding); i++)
-        ADCGS_TRY(remove_below(job, scaffolding[i]));
+        ADCGS_TRY(adcgs_import_remove(job, scaffolding[i]));
     if (rename(job->folder, job->options->output))
         return adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot rename to %s: %s", job->folder, job->options->output,
                           strerror(errno));
@@ -195,6 +169,8 @@ static adcgs_status run(adcgs_import_job *job)
     adcgs_colmap_program program;
     if (adcgs_is_there(o->output))
         return adcgs_fail(job->error, ADCGS_ERR_USAGE, "%s: exists already", o->output);
+    if (o->vocab_tree)
+        ADCGS_TRY(adcgs_file_check(o->vocab_tree, "COLMAP's vocabulary tree", job->error));
     ADCGS_TRY(adcgs_import_ask(&program, o, job->error));
     ADCGS_TRY(adcgs_source_images_list(&job->sources, o, job->progress, job->error));
     report_footage(job);

@@ -19,20 +19,28 @@ typedef enum adcgs_import_lens {
     ADCGS_IMPORT_FISHEYE,
 } adcgs_import_lens;
 
+typedef enum adcgs_import_mapper {
+    ADCGS_IMPORT_AUTO, /**< glomap where it is installed, else COLMAP's mapper */
+    ADCGS_IMPORT_COLMAP,
+    ADCGS_IMPORT_GLOMAP,
+} adcgs_import_mapper;
+
 typedef struct adcgs_import_options {
     char *const *inputs; /**< files and folders, as on the command line */
     int n_inputs;
-    const char *output; /**< folder to create */
-    const char *colmap; /**< name or path of the program */
-    const char *masks;  /**< a folder, or NULL */
-    int side;           /**< maximum width and height of images */
-    int frames;         /**< maximum number of frames from a moving camera's video */
-    int test_every;     /**< every test_every-th view or fixed camera is for testing; 0: none */
-    int lens;           /**< adcgs_import_lens */
-    int own_lens;       /**< each camera of a rig has intrinsics of its own */
-    int anyway;         /**< accepts poses without parallax, and of few images */
-    int threads;        /**< for COLMAP; 0: one per processor */
-    adcgs_fps fps;      /**< of images taken one after another; unknown: all at one time */
+    const char *output;     /**< folder to create */
+    const char *colmap;     /**< name or path of the program */
+    const char *vocab_tree; /**< file for COLMAP, or NULL: one of those that are installed */
+    int mapper;             /**< adcgs_import_mapper */
+    const char *masks;      /**< a folder, or NULL */
+    int side;               /**< maximum width and height of images */
+    int frames;             /**< maximum number of frames from a moving camera's video */
+    int test_every;         /**< every test_every-th view or fixed camera is for testing; 0: none */
+    int lens;               /**< adcgs_import_lens */
+    int own_lens;           /**< each camera of a rig has intrinsics of its own */
+    int anyway;             /**< accepts poses without parallax, and of few images */
+    int threads;            /**< for COLMAP; 0: one per processor */
+    adcgs_fps fps;          /**< of images taken one after another; unknown: all at one time */
 } adcgs_import_options;
 
 /** Quality of the poses. */
@@ -40,7 +48,8 @@ typedef struct adcgs_import_report {
     const char *kind;         /**< "pictures", "film" or "rig" */
     uint32_t pictures, posed; /**< images given to COLMAP, and those with a pose */
     uint32_t cameras, found;  /**< fixed cameras of a rig, and those with a pose; otherwise 0 */
-    uint32_t models;          /**< models made by COLMAP; the largest is used */
+    const char *mapper;       /**< program that found the cameras: "colmap" or "glomap" */
+    uint32_t models;          /**< models made by it; the largest is used */
     uint32_t points;          /**< initial points for training */
     double error;             /**< mean reprojection error in pixels */
     double track;             /**< mean number of images that see a point */

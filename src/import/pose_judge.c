@@ -11,7 +11,7 @@ static adcgs_status judge_number(const adcgs_import_job *job)
     static const char *const advice[] = {
         "photograph in small steps, with most of the last image in each",
         "film slowly and without blur, or choose another piece",
-        "turn the cameras so that each sees most of what its neighbours see",
+        "turn the cameras so that the views of neighbours overlap by half",
     };
     const adcgs_import_report *const r = job->report;
     const int kind = (int)job->sources.kind;

@@ -12,6 +12,7 @@
 #include "io/video.h"
 
 #include <errno.h>
+#include <ftw.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 
@@ -30,6 +31,30 @@ adcgs_status adcgs_import_make_folder(const adcgs_import_job *job, const char *n
     adcgs_status status = ADCGS_OK;
     if (mkdir(path, 0777) && errno != EEXIST)
         status = adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", path, strerror(errno));
+    free(path);
+    return status;
+}
+
+static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *place)
+{
+    (void)status;
+    (void)kind;
+    (void)place;
+    return remove(path);
+}
+
+adcgs_status adcgs_import_remove_tree(const char *path, adcgs_error *error)
+{
+    if (nftw(path, remove_entry, 8, FTW_DEPTH | FTW_PHYS) && errno != ENOENT)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot remove: %s", path, strerror(errno));
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_import_remove(const adcgs_import_job *job, const char *name)
+{
+    char *path;
+    ADCGS_TRY(adcgs_import_path(&path, job, name));
+    const adcgs_status status = adcgs_import_remove_tree(path, job->error);
     free(path);
     return status;
 }
@@ -117,7 +142,7 @@ static adcgs_status make_images(adcgs_import_job *job, uint32_t camera, uint32_t
         if (sources->list[i].camera != camera)
             continue;
         status = make_image(job, &sources->list[i], video);
-        adcgs_progress_show(job->progress, "images    %6u/%u", ++*done, sources->n);
+        adcgs_import_show(&job->phase, job->progress, "images", ++*done, sources->n, 1.0);
     }
     adcgs_video_close(&video);
     return status;
@@ -190,7 +215,7 @@ adcgs_status adcgs_import_videos(adcgs_import_job *job)
         ADCGS_TRY(status);
         if (job->options->masks)
             ADCGS_TRY(adcgs_import_camera_mask(job, i));
-        adcgs_progress_show(job->progress, "videos    %6u/%u", i + 1, job->sources.n_cameras);
+        adcgs_import_show(&job->phase, job->progress, "videos", i + 1, job->sources.n_cameras, 1.0);
     }
     return ADCGS_OK;
 }

@@ -3,6 +3,7 @@
 #ifndef ADCGS_IMPORT_SCENE_IMAGES_H
 #define ADCGS_IMPORT_SCENE_IMAGES_H
 
+#include "import/phase.h"
 #include "import/source_images.h"
 
 typedef struct adcgs_import_job {
@@ -12,6 +13,7 @@ typedef struct adcgs_import_job {
     char *log;     /**< path of COLMAP's log */
     int has_masks; /**< at least one image has a mask */
     adcgs_progress *progress;
+    adcgs_import_phase phase;
     adcgs_import_report *report;
     adcgs_error *error;
 } adcgs_import_job;
@@ -23,6 +25,10 @@ typedef struct adcgs_import_job {
 adcgs_status adcgs_import_path(char **out, const adcgs_import_job *job, const char *name);
 /** Makes a folder in the job's folder, unless it exists. */
 adcgs_status adcgs_import_make_folder(const adcgs_import_job *job, const char *name);
+/** Removes a whole folder or a file, if it exists, without following links. */
+adcgs_status adcgs_import_remove_tree(const char *path, adcgs_error *error);
+/** The same in the job's folder. */
+adcgs_status adcgs_import_remove(const adcgs_import_job *job, const char *name);
 /** Returns ADCGS_ERR_IO after an interrupt. */
 adcgs_status adcgs_import_goes_on(const adcgs_import_job *job);
 

@@ -55,6 +55,7 @@ static adcgs_status print_json(const adcgs_import_report *r, const char *output,
         adcgs_json_int(&j, "cameras_posed", r->found);
         adcgs_json_real(&j, "spread", r->spread);
     }
+    adcgs_json_string(&j, "mapper", r->mapper);
     adcgs_json_int(&j, "models", r->models);
     adcgs_json_int(&j, "points", r->points);
     adcgs_json_real(&j, "reprojection_error", r->error);
@@ -157,6 +158,7 @@ static void add_footage_options(adcgs_option_table *out, arguments *a)
 static void add_camera_options(adcgs_option_table *out, arguments *a)
 {
     adcgs_import_options *const o = &a->import;
+    static const char *const mappers[] = {"auto", "colmap", "glomap", NULL};
     static const char *const lenses[] = {"radial", "pinhole", "opencv", "fisheye", NULL};
     const adcgs_option table[] = {
         {.name = "lens",
@@ -182,6 +184,17 @@ static void add_camera_options(adcgs_option_table *out, arguments *a)
          .target = &o->colmap,
          .value = "PROGRAM",
          .help = "COLMAP's program (default: colmap on the path)"},
+        {.name = "mapper",
+         .kind = ADCGS_OPTION_CHOICE,
+         .target = &o->mapper,
+         .choices = mappers,
+         .value = "NAME",
+         .help = "program that places the cameras: auto, colmap or glomap\n(default auto: glomap if it is installed)"},
+        {.name = "vocab-tree",
+         .kind = ADCGS_OPTION_FILE,
+         .target = &o->vocab_tree,
+         .value = "FILE",
+         .help = "vocabulary tree of COLMAP, which recognises places that a\nfilm shows again (default: an installed one)"},
         {.name = "threads",
          .letter = 'T',
          .kind = ADCGS_OPTION_INT,
@@ -233,9 +246,11 @@ static int import(const adcgs_cli *cli, const arguments *a)
     adcgs_import_report report;
     adcgs_progress progress;
     adcgs_progress_init(&progress, cli);
+    adcgs_progress_keep(&progress);
     adcgs_interrupt_catch(1);
     const adcgs_status status = adcgs_import(&a->import, &progress, &report, &error);
     adcgs_progress_clear(&progress);
+    adcgs_progress_end(&progress);
     if (status != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
     warn(cli, &report);

@@ -214,7 +214,7 @@ static void show(leader *l)
                                    l->job->config.iterations);
     }
     adcgs_progress_show(&l->progress, "segments  %u/%u%s%s  %.0f it/s%s", l->done, l->job->cuts.n, text, n > SHOWN ? "  ..." : "",
-                        rate, adcgs_enc_format_eta(rate > 0 ? fmax(iterations, 0) / rate : (double)NAN, left));
+                        rate, adcgs_progress_eta(rate > 0 ? fmax(iterations, 0) / rate : (double)NAN, left));
 }
 
 /** Reports all ranks with their segments in one line, since the signal's sender has named at most one. */

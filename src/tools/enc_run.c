@@ -87,16 +87,6 @@ static void log_last(adcgs_enc_context *w)
     log_line(w, &line);
 }
 
-const char *adcgs_enc_format_eta(double seconds, char text[32])
-{
-    const unsigned whole = seconds >= 0 && seconds < 1e9 ? (unsigned)seconds : 0;
-    if (whole >= 3600)
-        snprintf(text, 32, "  %u:%02u:%02u left", whole / 3600, whole / 60 % 60, whole % 60);
-    else
-        snprintf(text, 32, "  %u:%02u left", whole / 60, whole % 60);
-    return isnan(seconds) ? "" : text;
-}
-
 /** Saves a checkpoint. If that fails the run continues, and tries again when the next one is due. */
 static void save_now_and_then(adcgs_enc_context *w, double seconds)
 {
@@ -155,7 +145,7 @@ static int observe(void *user, const adcgs_train_report *r)
     else if (r->iteration)
         adcgs_progress_show(&w->progress, "%s%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
                             attempt, r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors,
-                            r->bytes / 1000, r->rate, adcgs_enc_format_eta(r->left, left));
+                            r->bytes / 1000, r->rate, adcgs_progress_eta(r->left, left));
     if (r->iteration)
         adcgs_enc_preview_show(&w->preview, w->t, r->stage, &w->progress);
     if (w->keeps && r->spent.clock - w->saved > w->o->checkpoint_every)

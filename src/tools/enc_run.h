@@ -83,8 +83,6 @@ typedef struct adcgs_enc_job {
     adcgs_pool *pool;
 } adcgs_enc_job;
 
-/** Formats "  1:05:00 left", or nothing if the time is unknown. */
-const char *adcgs_enc_format_eta(double seconds, char text[32]);
 /**
  * changes: settings that differ from the preset's, "" for none. The notes point into this struct, changes and the configuration.
  */

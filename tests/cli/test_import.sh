@@ -8,6 +8,18 @@ need adcgs-import adcgs-enc tests/cli/make-scenes
 top=$(cd "${srcdir:-.}" && pwd)
 export FAKE=$dir/fake
 fake=$top/tests/cli/fake-colmap
+# An installed glomap, or a vocabulary tree, does not affect the test: its own ones come first. FAKE_GLOMAP: "" (no program), "works"
+# or "fails".
+mkdir -p "$dir/bin" "$dir/cache/colmap"
+export PATH=$dir/bin:$PATH XDG_CACHE_HOME=$dir/cache
+cat >"$dir/bin/glomap" <<END
+#!/bin/sh
+[ "\$2" != -h ] || { [ -n "\${FAKE_GLOMAP-}" ] && echo "  --database_path arg"; exit 0; }
+echo "glomap \$*" >>"\$FAKE.calls"
+[ "\$FAKE_GLOMAP" = works ] || { mkdir "\$7/0" "\$7/1" && echo "ERROR: no view graph" >&2 && exit 1; }
+"$fake" "\$@"
+END
+chmod +x "$dir/bin/glomap"
 tests/cli/make-scenes "$dir" >"$dir/kinds" || { bad "make-scenes"; exit 1; }
 
 # import CODE TEXT ARGUMENTS...: run adcgs-import with the stand-in; it has to create $dir/s.
@@ -123,6 +135,66 @@ if grep -q '^neu3d-videos' "$dir/kinds"; then
     import 2 'has times of its own' --fps 3 "$dir/neu3d-videos/cam03.mp4"
 else
     echo "skipped: videos: this build cannot write them"
+fi
+
+# Films of 30 images or more are matched in sequence, if their names are in order; photographs as all pairs.
+mkdir "$dir/long" "$dir/mixed"
+for i in {100..129}; do
+    cp "$pictures/${first##*/}" "$dir/long/f$i.${first##*.}"
+    cp "$pictures/${first##*/}" "$dir/mixed/f$(((i * 7) % 31 + 1)).${first##*.}"
+done
+sequence='sequential_matcher .*--SequentialMatching.overlap 10 --SequentialMatching.quadratic_overlap 1'
+import 0 'names are plain numbers' "$dir/long"
+called "$sequence"
+grep -q loop_detection "$FAKE.calls" && bad "loop detection without a tree"
+import 0 '' --fps 10 "$dir/long"
+called "$sequence"
+import 0 '' "$dir/mixed"
+called exhaustive_matcher
+(cd "$dir/mixed" && ls | sort -V | sed "s|^|$dir/mixed/|") >"$dir/in-order" # f2 before f10, unlike for COLMAP
+import 0 '' --fps 10 $(cat "$dir/in-order")
+called exhaustive_matcher
+rm "$dir/long/f129".*
+import 0 '' --fps 10 "$dir/long"
+called exhaustive_matcher
+cp "$pictures/${first##*/}" "$dir/long/f129.${first##*.}"
+
+# A vocabulary tree finds places that the film shows again: an installed one of COLMAP's format, or the given one.
+echo tree | tee "$dir/cache/colmap/00-vocab_tree_faiss_x.bin" >"$dir/own.bin"
+import 0 '' --fps 10 "$dir/long"
+grep -q loop_detection "$FAKE.calls" && bad "a tree of another format"
+FAKE_HOW=new import 0 '' --fps 10 "$dir/long"
+called "$sequence --SequentialMatching.loop_detection 1 --SequentialMatching.vocab_tree_path $dir/cache/colmap/00-vocab_tree_faiss_x.bin"
+echo other >"$dir/cache/colmap/vocab_tree_x.bin"
+import 0 'vocab_tree_x.bin: COLMAP cannot use this vocabulary tree; matching without it' --fps 10 "$dir/long"
+import 0 '' --fps 10 --vocab-tree "$dir/own.bin" "$dir/long"
+called "vocab_tree_path $dir/own.bin"
+import 4 'sequential_matcher failed .*no tree' --fps 10 --vocab-tree "$dir/cache/colmap/vocab_tree_x.bin" "$dir/long"
+import 3 'nothing.bin' --fps 10 --vocab-tree "$dir/nothing.bin" "$dir/long"
+rm -rf "$dir/s.importing" "$dir/cache/colmap"
+
+# glomap places the cameras where it is installed; COLMAP does after a failure, or by choice.
+FAKE_GLOMAP=works import 0 '' --fps 10 --json "$pictures"
+called '^glomap mapper --database_path .*--image_path .*--output_path'
+grep -q '"mapper": "glomap"' "$dir/out" || bad "JSON does not name glomap"
+FAKE_GLOMAP=fails import 0 'glomap mapper failed .*no view graph.*: continuing with COLMAP' --fps 10 --json "$pictures"
+grep -q '"mapper": "colmap"' "$dir/out" && grep -q '"models": 1' "$dir/out" || { bad "models of glomap are left"; cat "$dir/out"; }
+FAKE_GLOMAP=works import 0 '' --fps 10 --mapper colmap "$pictures"
+grep -q ^glomap "$FAKE.calls" && bad "glomap in spite of --mapper colmap"
+FAKE_GLOMAP=fails import 4 'glomap mapper failed' --fps 10 --mapper glomap "$pictures"
+import 5 'mapper glomap: no such program' --fps 10 --mapper glomap "$pictures"
+rm -rf "$dir/s.importing"
+
+# Each phase has a name, its parts and the time left, on a terminal.
+if command -v script >/dev/null; then
+    rm -rf "$dir/s"
+    FAKE_HOW=slow script -qec "./adcgs-import --colmap '$fake' -o '$dir/s' '$pictures'" /dev/null >"$dir/out" 2>&1 </dev/null || bad "on a terminal"
+    for line in "features  *[7-9]/$n  0:0[0-9] left" 'matching  *[2-4]/4' "cameras  *\(\.\.\.\|[1-9]/$n\)"; do
+        tr '\r' '\n' <"$dir/out" | grep -q "^$line" || { bad "no line '$line'"; cat -v "$dir/out"; }
+    done
+    tr '\r' '\n' <"$dir/out" | grep -q "^features  *1/$n  .*left" && bad "a time left without a rate"
+else
+    echo "skipped: the progress line: no script"
 fi
 
 # Errors, in one line. COLMAP's log remains, and the next run resumes from the finished steps.

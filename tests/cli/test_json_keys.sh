@@ -78,7 +78,7 @@ for name in live resumed; do sample "adcgs-enc --live" "$dir/$name.json"; done
 
 # Imported pictures and videos, with a stand-in for COLMAP.
 export FAKE=$dir/fake
-import() { printed "$@" --colmap "$top/tests/cli/fake-colmap" -o "$dir/imported-$1" --json; }
+import() { printed "$@" --mapper colmap --colmap "$top/tests/cli/fake-colmap" -o "$dir/imported-$1" --json; }
 tests/cli/make-scenes "$dir" >"$dir/kinds" || bad "make-scenes"
 import film ./adcgs-import --fps 10 "$dir/llff/images"
 names=film
