@@ -140,6 +140,7 @@ static void report_footage(const adcgs_import_job *job)
     const adcgs_source_image_camera *first = &sources->cameras[0];
     r->kind = kinds[sources->kind];
     r->pictures = sources->n;
+    r->hdr = sources->hdr;
     r->is_numbered = sources->is_numbered && sources->kind == ADCGS_FOOTAGE_PICTURES;
     for (uint32_t i = 0; i < sources->n; i++)
         r->seconds = fmax(r->seconds, sources->list[i].time);

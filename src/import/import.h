@@ -57,6 +57,7 @@ typedef struct adcgs_import_report {
     double spread;            /**< for a rig: spread of its cameras' poses over time, relative to the cameras' mean distance */
     double seconds;           /**< of the footage */
     int width, height;        /**< of the first image */
+    const char *hdr;          /**< "HLG" or "PQ" if a video has high dynamic range, which is converted; else NULL */
     int is_numbered;          /**< images without times whose names only count: possibly frames of a video */
 } adcgs_import_report;
 

@@ -38,6 +38,7 @@ typedef struct adcgs_source_images {
     adcgs_source_image *list;
     uint32_t n_cameras, n;
     adcgs_fps rate;  /**< of the selected frames; unknown: images of one time */
+    const char *hdr; /**< "HLG" or "PQ" if a video has high dynamic range, which is converted; else NULL */
     int is_numbered; /**< names of images are one prefix with consecutive numbers */
 } adcgs_source_images;
 

@@ -5,6 +5,7 @@
 #include "import/source_images.h"
 
 #include "data/paths.h"
+#include "io/kind.h"
 #include "io/video.h"
 
 adcgs_status adcgs_source_images_list(adcgs_source_images *out, const adcgs_import_options *options, adcgs_progress *progress,
@@ -12,8 +13,13 @@ adcgs_status adcgs_source_images_list(adcgs_source_images *out, const adcgs_impo
 {
     int videos = 0;
     *out = (adcgs_source_images){0};
-    for (int i = 0; i < options->n_inputs; i++)
+    for (int i = 0; i < options->n_inputs; i++) {
+        const adcgs_kind *const kind = adcgs_kind_at(options->inputs[i]);
+        if (kind->class == ADCGS_KIND_VIDEO && kind->advice) /* as of two fisheyes, also if its name ends in .mp4 */
+            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%.150s: %s, which is not read: %s", options->inputs[i], kind->name,
+                              kind->advice);
         videos += adcgs_is_video(options->inputs[i]) && !adcgs_is_folder(options->inputs[i]);
+    }
     if (videos && videos < options->n_inputs)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "expected either videos or images, not both");
     if (videos && options->fps.den)

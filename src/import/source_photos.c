@@ -37,13 +37,28 @@ static int ends_like(const char *path, const char *a, const char *b)
     return !strcasecmp(end, a) || !strcasecmp(end, b);
 }
 
+/** Names the remedy for an HEIC or AVIF image that cannot be read: a command that converts it. */
+static adcgs_status explain_heif(const char *path, adcgs_status status, adcgs_error *error)
+{
+    const adcgs_kind *const kind = adcgs_kind_at(path);
+    char stem[256];
+    if ((status != ADCGS_ERR_UNSUPPORTED && status != ADCGS_ERR_DATA) || !kind->reader || strcmp(kind->reader, "heif"))
+        return status;
+    adcgs_stem(stem, sizeof stem, path);
+    return adcgs_fail(error, status,
+                      "%.120s: %s that OpenImageIO cannot read here: convert it: heif-convert -q 95 %.40s.%.8s %.40s.jpg", path,
+                      kind->name, stem, adcgs_extension(path), stem);
+}
+
 static adcgs_status add_picture(adcgs_source_images *sources, const char *path, const adcgs_import_options *options,
                                 adcgs_error *error)
 {
     adcgs_photo photo;
     char stem[256];
     uint32_t camera;
-    ADCGS_TRY(adcgs_photo_probe(&photo, path, error));
+    const adcgs_status status = adcgs_photo_probe(&photo, path, error);
+    if (status != ADCGS_OK)
+        return explain_heif(path, status, error);
     ADCGS_TRY(find_camera(sources, &photo, &camera, error));
     adcgs_stem(stem, sizeof stem, path);
     adcgs_source_image *source = adcgs_source_images_add(sources, camera, stem, error);

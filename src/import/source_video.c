@@ -19,6 +19,13 @@ static adcgs_status add_camera(adcgs_source_images *sources, const char *path, c
 {
     const adcgs_video_info *info = adcgs_video_get_info(video);
     char stem[256];
+    if (info->round)
+        return adcgs_fail(
+            error, ADCGS_ERR_UNSUPPORTED,
+            "%.100s: a 360-degree video (%.20s), expected one of a plain lens: cut flat views from it, as by ffmpeg "
+            "-i VIDEO -vf v360=e:flat:h_fov=90:v_fov=60 flat.mp4",
+            path, info->round);
+    sources->hdr = info->hdr ? info->hdr : sources->hdr;
     adcgs_stem(stem, sizeof stem, path);
     adcgs_source_image_camera *camera = adcgs_source_images_add_camera(sources, stem, error);
     if (!camera)

@@ -3,12 +3,13 @@
  * Video files through FFmpeg's libraries, in a module of their own. Colours are
  * converted to RGB by the stream's own matrix and range. By default, large
  * videos have BT.709's matrix, small ones BT.601's, and the range is limited.
+ * High dynamic range (HLG, PQ) is converted to the range of ordinary screens.
  */
 #ifndef ADCGS_IO_VIDEO_H
 #define ADCGS_IO_VIDEO_H
 
-#include "io/image.h"
 #include "io/fps.h"
+#include "io/image.h"
 
 #include <adcgs/types.h>
 
@@ -18,6 +19,8 @@ typedef struct adcgs_video_info {
     int width, height; /**< as shown: rotation applied, square pixels */
     int64_t frames;    /**< counted; the header's number is not trusted */
     adcgs_fps rate;    /**< the mean rate; always known */
+    const char *hdr;   /**< name of the first frame's high dynamic range, "HLG" or "PQ", which is converted; NULL: none */
+    const char *round; /**< projection of a panorama, as "equirectangular"; NULL: an ordinary lens */
 } adcgs_video_info;
 
 /** True if the name ends like a video file's (mp4, mov, mkv, webm, avi, m4v, ...). */

@@ -4,7 +4,10 @@
 
 #include "io/video_input.h"
 
+#include <libavutil/spherical.h>
+
 #include <errno.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -169,20 +172,32 @@ int adcgs_video_input_next(adcgs_video_input *input, AVPacket *packet)
     }
 }
 
-const int32_t *adcgs_video_input_matrix(const adcgs_video_input *input)
+/** Data that the container attaches to the stream, at least `least` bytes; NULL if there is none. */
+static const void *find_side_data(const adcgs_video_input *input, enum AVPacketSideDataType type, size_t least)
 {
 #if LIBAVCODEC_VERSION_INT >= AV_VERSION_INT(60, 31, 0) /* FFmpeg 6.1 moved it */
     const AVCodecParameters *par = input->stream->codecpar;
-    const AVPacketSideData *side =
-        av_packet_side_data_get(par->coded_side_data, par->nb_coded_side_data, AV_PKT_DATA_DISPLAYMATRIX);
-    return side && side->size >= 9 * sizeof(int32_t) ? (const int32_t *)(const void *)side->data : NULL;
+    const AVPacketSideData *side = av_packet_side_data_get(par->coded_side_data, par->nb_coded_side_data, type);
+    return side && side->size >= least ? side->data : NULL;
 #else
 #if LIBAVFORMAT_VERSION_MAJOR < 59
     int size = 0;
 #else
     size_t size = 0;
 #endif
-    const uint8_t *data = av_stream_get_side_data(input->stream, AV_PKT_DATA_DISPLAYMATRIX, &size);
-    return data && (size_t)size >= 9 * sizeof(int32_t) ? (const int32_t *)(const void *)data : NULL;
+    const uint8_t *data = av_stream_get_side_data(input->stream, type, &size);
+    return data && (size_t)size >= least ? data : NULL;
 #endif
+}
+
+const int32_t *adcgs_video_input_matrix(const adcgs_video_input *input)
+{
+    return find_side_data(input, AV_PKT_DATA_DISPLAYMATRIX, 9 * sizeof(int32_t));
+}
+
+const char *adcgs_video_input_projection(const adcgs_video_input *input)
+{
+    const AVSphericalMapping *const mapping =
+        find_side_data(input, AV_PKT_DATA_SPHERICAL, offsetof(AVSphericalMapping, projection) + sizeof mapping->projection);
+    return mapping ? av_spherical_projection_name(mapping->projection) : NULL;
 }

@@ -30,5 +30,7 @@ int adcgs_video_input_next(adcgs_video_input *input, AVPacket *packet);
 int adcgs_video_input_cut(const adcgs_video_input *input);
 /** The matrix that turns the image, nine numbers as in ISO 14496-12; NULL if there is none. */
 const int32_t *adcgs_video_input_matrix(const adcgs_video_input *input);
+/** FFmpeg's name of a panorama's projection; NULL for an ordinary lens. */
+const char *adcgs_video_input_projection(const adcgs_video_input *input);
 
 #endif

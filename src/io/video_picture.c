@@ -24,11 +24,13 @@ typedef struct source {
     int width, height;
     float zero[3], scale[3]; /* value = (sample - zero) * scale: 0..1, chroma -0.5..0.5 */
     adcgs_ycbcr weights;     /* not used for RGB */
-    float from[2];           /* offset of the first chroma sample from the first luma sample, right and down [pixels] */
-    uint16_t *samples;       /* one row as stored */
-    int (*column)[2];        /* for each column of pixels, the chroma columns before and after it */
-    float *right;            /* weight of the chroma column after it */
-    float *blend, *row[3];   /* one row of chroma as stored; one row of pixels for each component */
+    adcgs_hdr hdr;
+    int is_wide;           /* primaries of BT.2020 */
+    float from[2];         /* offset of the first chroma sample from the first luma sample, right and down [pixels] */
+    uint16_t *samples;     /* one row as stored */
+    int (*column)[2];      /* for each column of pixels, the chroma columns before and after it */
+    float *right;          /* weight of the chroma column after it */
+    float *blend, *row[3]; /* one row of chroma as stored; one row of pixels for each component */
 } source;
 
 static int is_rgb(const source *s)
@@ -180,6 +182,8 @@ static void colour_row(const source *s, float *out)
         float rgb[3] = {a[x], b[x], c[x]};
         if (!plain)
             adcgs_ycbcr_to_rgb(s->weights, a[x], b[x], c[x], rgb);
+        if (s->hdr)
+            adcgs_hdr_convert(s->hdr, s->is_wide, rgb);
         for (int k = 0; k < 3; k++)
             out[k] = clip(rgb[k]);
     }
@@ -201,6 +205,13 @@ static void convert(source *s, adcgs_image *out)
     }
 }
 
+adcgs_hdr adcgs_video_hdr(const AVFrame *frame)
+{
+    return frame->color_trc == AVCOL_TRC_ARIB_STD_B67 ? ADCGS_HDR_HLG
+           : frame->color_trc == AVCOL_TRC_SMPTE2084  ? ADCGS_HDR_PQ
+                                                      : ADCGS_HDR_NONE;
+}
+
 adcgs_status adcgs_video_picture(adcgs_image *out, const AVFrame *frame, const adcgs_video_view *view, const char *name,
                                  adcgs_error *error)
 {
@@ -211,6 +222,8 @@ adcgs_status adcgs_video_picture(adcgs_image *out, const AVFrame *frame, const a
     ADCGS_TRY(check_format(&s, name, error));
     ADCGS_TRY(choose_weights(&s, name, error));
     ADCGS_TRY(adcgs_image_alloc(out, s.width, s.height, 3, name, error));
+    s.hdr = adcgs_video_hdr(frame);
+    s.is_wide = frame->color_primaries == AVCOL_PRI_BT2020;
     set_levels(&s);
     set_chroma_place(&s);
     const size_t width = (size_t)s.width;

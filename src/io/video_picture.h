@@ -8,6 +8,7 @@
 #ifndef ADCGS_IO_VIDEO_PICTURE_H
 #define ADCGS_IO_VIDEO_PICTURE_H
 
+#include "io/hdr.h"
 #include "io/image.h"
 
 #include <libavutil/frame.h>
@@ -17,10 +18,12 @@ typedef struct adcgs_video_view {
     const int32_t *matrix; /**< turns the image; NULL: it is upright */
 } adcgs_video_view;
 
+/** The dynamic range that a frame declares. */
+adcgs_hdr adcgs_video_hdr(const AVFrame *frame);
 /**
- * Convert a frame. Chroma is interpolated linearly between its samples at the positions that the stream declares (by default
- * left). name: the image's name in messages. ADCGS_ERR_UNSUPPORTED for unknown kinds of samples and matrices, and for turns by
- * other than right angles.
+ * Convert a frame, also one of high dynamic range. Chroma is interpolated linearly between its samples at the positions that the
+ * stream declares (by default left). name: the image's name in messages. ADCGS_ERR_UNSUPPORTED for unknown kinds of samples and
+ * matrices, and for turns by other than right angles.
  */
 adcgs_status adcgs_video_picture(adcgs_image *out, const AVFrame *frame, const adcgs_video_view *view, const char *name,
                                  adcgs_error *error);

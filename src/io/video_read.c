@@ -272,7 +272,12 @@ static adcgs_status open_reader(adcgs_video_reader *r, adcgs_video_info *info, a
     r->width = first.width;
     r->height = first.height;
     adcgs_image_free(&first);
-    *info = (adcgs_video_info){r->width, r->height, r->index.frames, rate};
+    *info = (adcgs_video_info){.width = r->width,
+                               .height = r->height,
+                               .frames = r->index.frames,
+                               .rate = rate,
+                               .hdr = adcgs_hdr_name(adcgs_video_hdr(r->frame)),
+                               .round = adcgs_video_input_projection(&r->input)};
     return ADCGS_OK;
 }
 

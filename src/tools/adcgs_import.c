@@ -98,6 +98,9 @@ static void warn(const adcgs_cli *cli, const adcgs_import_report *r)
                        "a camera's poses at different times are %.1f %% of the rig's size apart: check that the cameras "
                        "stand still",
                        100.0 * r->spread);
+    if (r->hdr)
+        adcgs_cli_note(cli, "the video is of high dynamic range (%s): its frames are converted to the range of plain screens",
+                       r->hdr);
     if (r->is_numbered)
         adcgs_cli_note(cli, "the images' names are plain numbers: if they are frames of a video, --fps N keeps their times; "
                             "without it this scene is static");

@@ -133,6 +133,41 @@ if grep -q '^neu3d-videos' "$dir/kinds"; then
     expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q
     import 2 'not both' "$dir/neu3d-videos/cam03.mp4" "$pictures"
     import 2 'has times of its own' --fps 3 "$dir/neu3d-videos/cam03.mp4"
+    # Cameras of 360 degrees: two fisheyes in a file, by its name or its end, are reported.
+    cp "$dir/neu3d-videos/cam03.mp4" "$dir/VID_1.insv"
+    { cat "$dir/neu3d-videos/cam03.mp4"; printf 8db42d694ccc418790edff439fe026bf; } >"$dir/VID_2.mp4"
+    for video in VID_1.insv VID_2.mp4; do
+        import 5 "$video: a video of two fisheyes (Insta360), which is not read: export a flat video" "$dir/$video"
+    done
+    # A panorama declares its projection in a box of its track.
+    if command -v python3 >/dev/null; then
+        python3 - "$dir/neu3d-videos/cam03.mp4" "$dir/round.mp4" <<'END' || bad "round.mp4"
+import struct, sys
+data = open(sys.argv[1], "rb").read()
+text = b'<rdf:SphericalVideo><GSpherical:StitchingSoftware>x</GSpherical:StitchingSoftware><GSpherical:Spherical>true</GSpherical:Spherical><GSpherical:Stitched>true</GSpherical:Stitched>' \
+    b'<GSpherical:ProjectionType>equirectangular</GSpherical:ProjectionType></rdf:SphericalVideo>'
+box = struct.pack(">I", len(text) + 24) + b"uuid" + bytes.fromhex("ffcc8263f8554a938814587a02521fdd") + text
+moov, track = data.index(b"moov") - 4, data.index(b"trak") - 4
+assert data.index(b"mdat") < moov # so that no offset changes
+sizes = {at: struct.unpack(">I", data[at:at + 4])[0] for at in (moov, track)}
+end = track + sizes[track]
+out = bytearray(data[:end] + box + data[end:])
+for at, size in sizes.items():
+    out[at:at + 4] = struct.pack(">I", size + len(box))
+open(sys.argv[2], "wb").write(out)
+END
+        import 5 'round.mp4: a 360-degree video (equirectangular), expected one of a plain lens: cut flat views .*v360=e:flat' "$dir/round.mp4"
+        import 5 'round.mp4: a 360-degree video' "$dir/neu3d-videos/cam00.mp4" "$dir/round.mp4"
+    else
+        echo "skipped: a panorama: no python3"
+    fi
+    # High dynamic range is converted, and reported.
+    if ffmpeg -v error -i "$dir/neu3d-videos/cam03.mp4" -c:v ffv1 -pix_fmt yuv420p10le -color_trc arib-std-b67 \
+        -color_primaries bt2020 -colorspace bt2020nc "$dir/hlg.mkv" 2>/dev/null; then
+        import 0 'the video is of high dynamic range (HLG): its frames are converted' "$dir/hlg.mkv"
+    else
+        echo "skipped: HLG: no ffmpeg"
+    fi
 else
     echo "skipped: videos: this build cannot write them"
 fi
@@ -225,7 +260,8 @@ mkdir "$dir/others"
 printf 'MM\0*\0\0\0\010\0\0\0\0' >"$dir/others/IMG_1.NEF"
 import 5 'IMG_1.NEF: a raw image of a camera, which is not read: develop' "$dir/others"
 printf '\0\0\0\030ftypheic\0\0\0\0mif1heic' >"$dir/others/IMG_2.HEIC"
-expect "$(./adcgs-import --colmap "$fake" -o "$dir/s" "$dir/others" 2>/dev/null; echo $?)" 'IMG_2.HEIC: .*heif' \
+expect "$(./adcgs-import --colmap "$fake" -o "$dir/s" "$dir/others" 2>/dev/null; echo $?)" \
+    'IMG_2.HEIC: an HEIC image that OpenImageIO cannot read here: convert it: heif-convert -q 95 IMG_2.HEIC IMG_2.jpg$' \
     ./adcgs-import --colmap "$fake" -o "$dir/s" "$dir/others"
 rm -rf "$dir/s" "$dir/s.importing"
 # HEIC next to another image of the same stem is ignored.

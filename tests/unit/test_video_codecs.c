@@ -17,16 +17,6 @@ const char *__lsan_default_suppressions(void)
     return "leak:x265";
 }
 
-typedef struct painted {
-    int depth, frame;
-} painted;
-
-static double painted_sample(const void *user, int plane, int x, int y)
-{
-    const painted *p = user;
-    return sample_at(p->depth, plane, x, y, p->frame);
-}
-
 /** The largest difference between an image and the samples' true values. */
 static double worst(const adcgs_image *image, const geometry *g, sample_fn sample, const void *user)
 {

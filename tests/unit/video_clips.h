@@ -8,6 +8,7 @@
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/pixdesc.h>
+#include <libavutil/spherical.h>
 #include <math.h>
 
 typedef struct recipe {
@@ -19,6 +20,12 @@ typedef struct recipe {
     AVRational aspect;
     int turn; /* 90: the image has to be turned by a quarter, clockwise */
 } recipe;
+
+/** Properties of unusual clips. */
+typedef struct clip_kind {
+    enum AVColorTransferCharacteristic curve; /* 0: unspecified */
+    int is_wide, is_round;                    /* primaries of BT.2020; an equirectangular panorama */
+} clip_kind;
 
 /** A sample: smooth, different in each frame, within the limited range. */
 static inline int sample_at(int depth, int plane, int x, int y, int frame)
@@ -74,7 +81,22 @@ static inline void set_turn(AVStream *stream)
 #endif
 }
 
-static inline AVCodecContext *open_encoder(const recipe *r, const AVCodec *codec, int global)
+static inline void set_round(AVStream *stream)
+{
+    size_t bytes;
+    AVSphericalMapping *const mapping = av_spherical_alloc(&bytes);
+    assert_non_null(mapping);
+    mapping->projection = AV_SPHERICAL_EQUIRECTANGULAR;
+#if LIBAVCODEC_VERSION_INT >= AV_VERSION_INT(60, 31, 0)
+    AVCodecParameters *par = stream->codecpar;
+    assert_non_null(
+        av_packet_side_data_add(&par->coded_side_data, &par->nb_coded_side_data, AV_PKT_DATA_SPHERICAL, mapping, bytes, 0));
+#else
+    assert_int_equal(av_stream_add_side_data(stream, AV_PKT_DATA_SPHERICAL, (uint8_t *)mapping, bytes), 0);
+#endif
+}
+
+static inline AVCodecContext *open_encoder(const recipe *r, const clip_kind *kind, const AVCodec *codec, int global)
 {
     AVCodecContext *c = avcodec_alloc_context3(codec);
     AVDictionary *options = NULL;
@@ -86,6 +108,8 @@ static inline AVCodecContext *open_encoder(const recipe *r, const AVCodec *codec
     const int is_rgb = (av_pix_fmt_desc_get(r->format)->flags & AV_PIX_FMT_FLAG_RGB) != 0;
     c->colorspace = r->space || is_rgb ? r->space : AVCOL_SPC_UNSPECIFIED;
     c->color_range = r->range;
+    c->color_trc = kind->curve ? kind->curve : AVCOL_TRC_UNSPECIFIED;
+    c->color_primaries = kind->is_wide ? AVCOL_PRI_BT2020 : AVCOL_PRI_UNSPECIFIED;
     c->sample_aspect_ratio = r->aspect;
     c->gop_size = 12;
     c->flags |= global ? AV_CODEC_FLAG_GLOBAL_HEADER : 0;
@@ -97,14 +121,14 @@ static inline AVCodecContext *open_encoder(const recipe *r, const AVCodec *codec
 }
 
 /** \return 0 if this build of FFmpeg cannot make the clip. */
-static inline int make_clip(const recipe *r)
+static inline int make_clip_of(const recipe *r, const clip_kind *kind)
 {
     const AVCodec *codec = avcodec_find_encoder_by_name(r->encoder);
     AVFormatContext *f = NULL;
     if (!codec)
         return 0;
     assert_true(avformat_alloc_output_context2(&f, NULL, NULL, in(r->name)) >= 0);
-    AVCodecContext *c = open_encoder(r, codec, f->oformat->flags & AVFMT_GLOBALHEADER);
+    AVCodecContext *c = open_encoder(r, kind, codec, f->oformat->flags & AVFMT_GLOBALHEADER);
     if (!c) {
         avformat_free_context(f);
         return 0;
@@ -115,6 +139,9 @@ static inline int make_clip(const recipe *r)
     avcodec_parameters_from_context(stream->codecpar, c);
     if (r->turn)
         set_turn(stream);
+    if (kind->is_round)
+        set_round(stream);
+    f->strict_std_compliance = FF_COMPLIANCE_UNOFFICIAL; /* writes the projection */
     assert_int_equal(avio_open(&f->pb, in(r->name), AVIO_FLAG_WRITE), 0);
     assert_true(avformat_write_header(f, NULL) >= 0);
     AVPacket *packet = av_packet_alloc();
@@ -138,6 +165,11 @@ static inline int make_clip(const recipe *r)
     avformat_free_context(f);
     avcodec_free_context(&c);
     return 1;
+}
+
+static inline int make_clip(const recipe *r)
+{
+    return make_clip_of(r, &(clip_kind){.is_wide = 0});
 }
 
 /* ---- The true pixels, in double and one by one: the formulae of ITU-T H.273 ---- */
@@ -171,6 +203,16 @@ static inline void true_pixel(const geometry *g, sample_fn sample, const void *u
     rgb[1] = (luma - g->red * rgb[0] - g->blue * rgb[2]) / (1 - g->red - g->blue);
     for (int c = 0; c < 3; c++)
         rgb[c] = fmin(fmax(rgb[c], 0), 1);
+}
+
+typedef struct painted {
+    int depth, frame;
+} painted;
+
+static inline double painted_sample(const void *user, int plane, int x, int y)
+{
+    const painted *p = user;
+    return sample_at(p->depth, plane, x, y, p->frame);
 }
 
 #endif
