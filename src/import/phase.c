@@ -27,5 +27,5 @@ void adcgs_import_show(adcgs_import_phase *phase, adcgs_progress *progress, cons
         adcgs_progress_show(progress, "%-9s %6u/%u%s", name, done, all,
                             adcgs_progress_eta(adcgs_import_time_left(now - phase->began, done, all, growth), text));
     else
-        adcgs_progress_show(progress, "%-9s ...", name);
+        adcgs_progress_show(progress, "%s ...", name);
 }

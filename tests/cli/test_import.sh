@@ -224,7 +224,7 @@ rm -rf "$dir/s.importing"
 if command -v script >/dev/null; then
     rm -rf "$dir/s"
     FAKE_HOW=slow script -qec "./adcgs-import --colmap '$fake' -o '$dir/s' '$pictures'" /dev/null >"$dir/out" 2>&1 </dev/null || bad "on a terminal"
-    for line in "features  *[7-9]/$n  0:0[0-9] left" 'matching  *[2-4]/4' "cameras  *\(\.\.\.\|[1-9]/$n\)"; do
+    for line in "features  *[7-9]/$n  0:0[0-9] left" 'matching  *[2-4]/4' "cameras *\(\.\.\.\|[1-9]/$n\)"; do
         tr '\r' '\n' <"$dir/out" | grep -q "^$line" || { bad "no line '$line'"; cat -v "$dir/out"; }
     done
     tr '\r' '\n' <"$dir/out" | grep -q "^features  *1/$n  .*left" && bad "a time left without a rate"
