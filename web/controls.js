@@ -2,12 +2,6 @@
 // Input: the user's actions change the player's state. Output: the state is shown.
 'use strict';
 
-const KEYS = { Escape: 27, ArrowLeft: 256, ArrowRight: 257, Home: 258, End: 259, PageUp: 260, PageDown: 261, F1: 262,
-               Shift: 263 };
-const KEY = 2, BUTTON = 3, MOTION = 4, WHEEL = 5, LOST = 7; // src/play/event.h
-const WHEEL_STEP = 100;                                     // pixels that browsers scroll per notch
-const ZOOM_STEP = 0.9;                                      // src/camera/orbit_control.c
-
 function opened() {
     return information && information.home;
 }

@@ -21,7 +21,7 @@ function memoryOf(bytes) {
         for (let value = 0, unit = 1; ; unit *= 128) {
             const byte = bytes[at++];
             value += unit * (byte & 127);
-            if (byte < 128)
+            if (!(byte > 127)) // also where other bytes end
                 return value;
         }
     };

@@ -12,6 +12,7 @@ uniform vec3 translation;
 uniform vec4 lens;              // fx, fy, cx, cy
 uniform vec4 limits;
 uniform float nearest, screen;  // near plane; variance added to footprints
+uniform vec2 depth;             // the depth of a splat is depth.x + depth.y / z; the page, which has nothing else, leaves it 0
 in vec2 corner;
 in uint index;
 out vec2 at;
@@ -47,7 +48,7 @@ void main() {
     conic = vec4(vec3(c, -b, a) / det, log(first.w));
     colour = texel(3).xyz;
     vec2 pixel = lens.xy * t + lens.zw + at;
-    gl_Position = vec4(2.0 * pixel.x / size.x - 1.0, 1.0 - 2.0 * pixel.y / size.y, 0.0, 1.0);
+    gl_Position = vec4(2.0 * pixel.x / size.x - 1.0, 1.0 - 2.0 * pixel.y / size.y, depth.x + depth.y / p.z, 1.0);
 }`;
 
 const FRAGMENT = `#version 300 es

@@ -7,6 +7,7 @@
 #include "base/digest.h"
 #include "camera/follow.h"
 #include "camera/pivot.h"
+#include "camera/rotation.h"
 #include "stream/chunk.h"
 #include "wasm/export.h"
 #include "wasm/page_scene.h"
@@ -38,6 +39,11 @@ static struct {
 adcgs_decoder *adcgs_page_decoder(void)
 {
     return scene.decoder;
+}
+
+adcgs_error *adcgs_page_error(void)
+{
+    return &scene.error;
 }
 
 void *PAGE_EXPORT(page_alloc)(size_t bytes)
@@ -184,6 +190,12 @@ const adcgs_camera *PAGE_EXPORT(page_home)(void)
     scene.home = frames.frame[0].camera;
     adcgs_camera_path_free(&frames);
     return &scene.home;
+}
+
+/** Fit a camera to an image of another size: the whole view stays visible. */
+void PAGE_EXPORT(page_fit)(adcgs_camera *camera, int width, int height)
+{
+    adcgs_camera_fit(camera, width, height, 0);
 }
 
 static adcgs_status reserve(size_t pixels)

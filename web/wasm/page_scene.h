@@ -8,4 +8,7 @@
 /** NULL before the first bytes. */
 adcgs_decoder *adcgs_page_decoder(void);
 
+/** The error that page_error() reports. */
+adcgs_error *adcgs_page_error(void);
+
 #endif

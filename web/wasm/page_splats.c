@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "base/base.h"
+#include "render/render.h"
 #include "wasm/export.h"
 #include "wasm/page_scene.h"
 
@@ -38,10 +39,10 @@ static int reserve(uint32_t n)
 int PAGE_EXPORT(page_pack)(double time)
 {
     adcgs_primitives p;
-    ADCGS_TRY(adcgs_get_primitives(adcgs_page_decoder(), time, &p, NULL));
+    ADCGS_TRY(adcgs_get_primitives(adcgs_page_decoder(), time, &p, adcgs_page_error()));
     splats.n = 0;
     if (reserve(p.n))
-        return ADCGS_ERR_MEMORY;
+        return adcgs_fail(adcgs_page_error(), ADCGS_ERR_MEMORY, "out of memory for %u splats", (unsigned)p.n);
     for (uint32_t i = 0; i < p.n; i++) {
         if (!(p.opacity[i] > 0))
             continue;
@@ -52,6 +53,21 @@ int PAGE_EXPORT(page_pack)(double time)
         memcpy(splats.texel[splats.n++], values, sizeof values);
     }
     return (int)splats.n;
+}
+
+/**
+ * A camera for a shader: rotation and translation from the scene's units, fx, fy, cx, cy, near plane, and four limits, 21 numbers
+ * in total; NULL if it cannot be rendered.
+ */
+const float *PAGE_EXPORT(page_uniforms)(const adcgs_camera *camera)
+{
+    static adcgs_view view;
+    adcgs_info info;
+    _Static_assert(sizeof view == 2 * sizeof(int32_t) + 21 * sizeof(float), "the shader's numbers lie in a row");
+    if (adcgs_get_info(adcgs_page_decoder(), &info, sizeof info, adcgs_page_error()) != ADCGS_OK ||
+        adcgs_view_init(&view, camera, info.scene_origin, info.scene_scale, adcgs_page_error()) != ADCGS_OK)
+        return NULL;
+    return view.rotation;
 }
 
 const float *PAGE_EXPORT(page_texels)(void)
