@@ -30,6 +30,14 @@ export interface PinholeCamera {
     near: number;
 }
 
+/** A camera that the clip stores. */
+export interface StoredCamera extends Required<PinholeCamera> {
+    /** Seconds at which it filmed; null if it has no time. */
+    readonly time: number | null;
+    /** Number of the filmed path that it is a key of; null if it is none. */
+    readonly path: number | null;
+}
+
 /** A camera at a position that looks at a target, in world units. */
 export interface LookAtCamera {
     position: Vector;
@@ -63,7 +71,7 @@ export interface Info {
     readonly segments: number;
     readonly layers: number;
     readonly tiers: number;
-    readonly cameras: readonly Required<PinholeCamera>[];
+    readonly cameras: readonly StoredCamera[];
     /** 1 to 3: bounds of memory and time for decoding. */
     readonly level: number;
     /** Of the bitstream, and of the decoder. */
@@ -128,8 +136,12 @@ export class Clip extends EventTarget {
     readonly closed: boolean;
     /** time: seconds; outside the clip's range, its start or end. */
     splats(time: number): Splats;
-    /** Computes the exact image. Its size is the camera's unless given; the whole view of the camera stays visible. */
-    frame(camera: Camera | undefined, time: number, size?: { width?: number; height?: number }): Frame;
+    /**
+     * Computes the exact image. Its size is the camera's unless given. In an image of another shape the whole view of the camera
+     * stays visible ('contain', the default), or a part of it fills the image ('cover').
+     */
+    frame(camera: Camera | undefined, time: number,
+          size?: { width?: number; height?: number; fit?: 'contain' | 'cover' }): Frame;
     /** Renders to the whole canvas, with WebGL2, or exactly if the canvas has a 2D context or there is no WebGL2. */
     render(canvas: HTMLCanvasElement | OffscreenCanvas, camera: Camera | undefined, time: number): void;
     /** Stops reading and frees the decoder. */

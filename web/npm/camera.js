@@ -3,6 +3,7 @@
 import { AdcgsError } from './error.js';
 
 const WIDTH = 0, HEIGHT = 4, LENS = 8, POSE = 40, NEAR = 136, NAME = 144, NAME_MOST = 63; // bytes in adcgs_camera
+const TIME = 208, PATH = 216;                                                           // in adcgs_filmed_camera
 const LENS_MEMBERS = ['fx', 'fy', 'cx', 'cy'];
 
 export function readCamera(bytes) {
@@ -13,6 +14,13 @@ export function readCamera(bytes) {
     camera.camToWorld = Array.from({ length: 12 }, (_, i) => numbers.getFloat64(POSE + 8 * i, true));
     camera.near = numbers.getFloat64(NEAR, true);
     return camera;
+}
+
+/** A stored camera with its time and path. */
+export function readFilmed(bytes) {
+    const numbers = new DataView(bytes.buffer, bytes.byteOffset), time = numbers.getFloat64(TIME, true);
+    const path = numbers.getInt32(PATH, true);
+    return { ...readCamera(bytes), time: Number.isNaN(time) ? null : time, path: path < 0 ? null : path };
 }
 
 function finite(value, text) {

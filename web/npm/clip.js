@@ -2,7 +2,7 @@
 // A clip: a stream on its way or complete, its splats and images at any time.
 import { AdcgsError } from './error.js';
 import { ARRIVED_END, ARRIVED_SEGMENT, OK } from './engine.js';
-import { lookAt, readCamera, writeCamera } from './camera.js';
+import { lookAt, readCamera, readFilmed, writeCamera } from './camera.js';
 import { paint } from './paint.js';
 
 const TEXELS = 16; // numbers of a splat: centre and opacity, rotation, scale, colour, each with four (web/wasm/page_splats.c)
@@ -129,9 +129,9 @@ export class Clip extends EventTarget {
 
     get info() {
         if (!this.#info) {
-            const facts = this.#facts(), size = this.engine.call.page_camera_size(), at = this.engine.call.page_cameras();
+            const facts = this.#facts(), size = this.engine.call.page_filmed_size(), at = this.engine.call.page_cameras();
             const cameras = Array.from({ length: at ? facts.cameras : 0 },
-                                       (_, i) => readCamera(this.engine.copy(at + i * size, size)));
+                                       (_, i) => readFilmed(this.engine.copy(at + i * size, size)));
             this.#info = infoOf(facts, cameras);
             this.#info.available = facts.time_available ?? (this.#isDrawable && this.#ended ? this.#info.timeEnd : -Infinity);
         }
@@ -156,8 +156,8 @@ export class Clip extends EventTarget {
         return cameras[index];
     }
 
-    /** The bytes of a camera, for an image of a size; by default its own. */
-    view(camera, width, height) {
+    /** The bytes of a camera, for an image of a size; by default its own. fit: as CSS's object-fit. */
+    view(camera, width, height, fit) {
         const home = readCamera(this.home());
         let wanted = camera ?? 'home';
         if (wanted === 'home')
@@ -169,7 +169,7 @@ export class Clip extends EventTarget {
                             height ?? wanted.height ?? home.height);
         const bytes = writeCamera(wanted, this.engine.call.page_camera_size());
         return width === undefined && height === undefined ? bytes : this.use([bytes], at => {
-            this.engine.call.page_fit(at, width ?? wanted.width, height ?? wanted.height);
+            this.engine.call.page_fit(at, width ?? wanted.width, height ?? wanted.height, fit === 'cover' ? 1 : 0);
             return this.engine.copy(at, bytes.length);
         });
     }
@@ -207,8 +207,8 @@ export class Clip extends EventTarget {
 
     // ---- Images. ----
 
-    frame(camera, time, { width, height } = {}) {
-        return this.exact(this.view(camera, width, height), time);
+    frame(camera, time, { width, height, fit } = {}) {
+        return this.exact(this.view(camera, width, height, fit), time);
     }
 
     /** The exact image for a camera's bytes, with its MD5. */

@@ -2,9 +2,10 @@
 // <adcgs-player src="scene.adcgs" autoplay loop controls>: a clip in the manner of <video>. Camera, clock and keys are those
 // of the page and of `adcgs-dec --play`: the view of the decoder's module.
 import { AdcgsError, open } from './adcgs.js';
-import { CONTENT } from './player_content.js';
 import { Input } from './input.js';
+import { CONTENT } from './player_content.js';
 import { isBusy, isFast, paint, release } from './paint.js';
+import { findPivot, showLimits } from './region.js';
 
 const Base = globalThis.HTMLElement ?? class {}; // a server may import this file, too
 
@@ -210,8 +211,9 @@ export class AdcgsPlayer extends Base {
         const pixels = length => Math.max(1, Math.round(length * dense));
         call.view_tick(performance.now() / 1000);
         call.view_resize(pixels(this.clientWidth), pixels(this.clientHeight), dense);
-        if (isFast(this.#part('canvas')) === null)
-            this.#newCanvas();
+        findPivot(this.#clip, call);
+        showLimits(call, this.#part('canvas').style);
+        if (isFast(this.#part('canvas')) === null) this.#newCanvas();
         const isWaiting = isBusy(this.#part('canvas'));
         if (!isWaiting)
             this.#draw();
@@ -249,8 +251,7 @@ export class AdcgsPlayer extends Base {
         if (isPaused !== (this.#shown.isPaused ?? true)) {
             this.#part('play').setAttribute('aria-label', isPaused ? 'Play' : 'Pause');
             this.#tell(isPaused ? 'pause' : 'play');
-            if (isPaused && this.ended)
-                this.#tell('ended');
+            if (isPaused && this.ended) this.#tell('ended');
         }
         this.#part('play').textContent = isPaused ? '▶' : '❚❚';
         this.#shown.isPaused = isPaused;

@@ -192,10 +192,10 @@ const adcgs_camera *PAGE_EXPORT(page_home)(void)
     return &scene.home;
 }
 
-/** Fit a camera to an image of another size: the whole view stays visible. */
-void PAGE_EXPORT(page_fit)(adcgs_camera *camera, int width, int height)
+/** Fit a camera to an image of another size: the whole view stays visible, or with fill a part of it fills the image. */
+void PAGE_EXPORT(page_fit)(adcgs_camera *camera, int width, int height, int fill)
 {
-    adcgs_camera_fit(camera, width, height, 0);
+    adcgs_camera_fit(camera, width, height, fill);
 }
 
 static adcgs_status reserve(size_t pixels)
