@@ -11,9 +11,29 @@ function fromBase64(text) {
     return bytes;
 }
 
-async function unpack(id) {
-    const packed = new Blob([fromBase64(document.getElementById(id).textContent)]);
+async function unpack(text) {
+    const packed = new Blob([fromBase64(text)]);
     return new Uint8Array(await new Response(packed.stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer());
+}
+
+/** Takes apart files whose pieces alternate: piece i of n of a file begins at its size * i / n. */
+function separate(bytes, n, sizes) {
+    const files = sizes.map(size => new Uint8Array(size));
+    let at = 0;
+    for (let i = 0; i < n; i++)
+        for (const file of files) {
+            const begin = Math.floor(file.length * i / n), length = Math.floor(file.length * (i + 1) / n) - begin;
+            file.set(bytes.subarray(at, at += length), begin);
+        }
+    return files;
+}
+
+/** The two modules in the page, from one packed text of both: assemble.sh makes it. */
+async function unpackModules() {
+    const text = document.getElementById('modules').textContent.trim(), end = text.indexOf('\n');
+    const [n, ...sizes] = text.slice(0, end).split(' ').map(Number);
+    const [relaxed, exact] = separate(await unpack(text.slice(end)), n, sizes);
+    return { relaxed, exact };
 }
 
 /** Bytes on their way to the worker: a limited number at a time, and none once it has enough. */

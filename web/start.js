@@ -18,7 +18,7 @@ function removeCard() {
 }
 
 async function load() {
-    const modules = { relaxed: await unpack('relaxed'), exact: await unpack('exact-module') };
+    const modules = await unpackModules();
     const which = chooseModule(modules, null);
     if (!which)
         throw new Error('This browser has no WebAssembly with SIMD. A newer one shows the scene.');

@@ -200,7 +200,7 @@ static void list_options(adcgs_option_table *out, settings *s)
          .kind = ADCGS_OPTION_STRING,
          .target = &s->image,
          .value = "URL",
-         .help = "image that a link to the page shows (default: the poster,\nwhich few services read from the page itself)"},
+         .help = "address of the image that a link to the page shows\n(default: none)"},
         {.name = "page",
          .kind = ADCGS_OPTION_STRING,
          .target = &s->page,

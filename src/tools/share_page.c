@@ -86,12 +86,9 @@ static void write_card(FILE *file, const adcgs_share_scene *scene)
     fputs("\">\n<meta property=\"og:description\" content=\"", file);
     write_description(file, scene);
     fputs("\">\n", file);
-    if (scene->image || scene->poster.data) {
+    if (scene->image) {
         fputs("<meta name=\"twitter:card\" content=\"summary_large_image\">\n<meta property=\"og:image\" content=\"", file);
-        if (scene->image)
-            adcgs_share_html(file, scene->image);
-        else
-            write_poster_address(file, &scene->poster);
+        adcgs_share_html(file, scene->image);
         fputs("\">\n", file);
     }
     if (scene->background)

@@ -20,7 +20,7 @@ typedef struct adcgs_share_scene {
     const char *title;      /**< NULL: the name without its folder and its ending */
     const char *credit;     /**< who made it; or NULL */
     const char *background; /**< colour of the page, #rrggbb; NULL: the page's own */
-    const char *image;      /**< address of the image for links to the page; NULL: the poster itself */
+    const char *image;      /**< address of the image for links to the page; or NULL */
     int camera;             /**< index of the stored camera of the first view; -1: as in the player */
     int has_time;
     double time; /**< of the first frame, seconds */
