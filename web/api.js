@@ -49,6 +49,7 @@ function cameraLookingAt({ position, target, up }) {
 const commands = {
     play: () => setPlaying(true),
     pause: () => setPlaying(false),
+    setMuted: muted => setMuted(Boolean(muted)),
     seek(seconds) {
         needScene();
         if (!isFinite(seconds))
@@ -90,6 +91,7 @@ Object.defineProperties(page, Object.getOwnPropertyDescriptors({
     get time() { return opened() ? view.call.view_time() : 0; },
     get duration() { return page.facts ? page.facts.time_end - page.facts.time_start : 0; },
     get playing() { return Boolean(opened() && view.call.view_playing()); },
+    get muted() { return !sound || sound.muted; },
     get cameras() { return storedNames(); },
 }));
 

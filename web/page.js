@@ -21,6 +21,7 @@ const page = window.adcgs = {
     get view() { return view; },
     get generation() { return generation; }, // of the scene's state; that of the last image is in page.picture
     get gpu() { return gpu; },
+    get sound() { return sound; },
 };
 
 let worker, view, gpu = null;
@@ -148,6 +149,7 @@ function step() {
     if (!information || !information.home)
         return;
     view.call.view_tick(performance.now() / 1000);
+    followSound();
     fitCanvas();
     requestPivot();
     showLimits();

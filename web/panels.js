@@ -165,6 +165,8 @@ function helpRows(title, rows) {
 function makeHelp() {
     const lines = view.text(view.call.view_help_lines()).trim().split('\n').map(line => line.split('\t'));
     const mouse = lines.filter(([keys]) => /drag|wheel/.test(keys)), keys = lines.filter(([name]) => !/drag|wheel/.test(name));
+    if (sound)
+        keys.push(['m', 'sound']);
     const texts = { p: 'save an image', 'h F1': 'this help' };
     const parts = [element('h2', 'Help')];
     if (hasTouch())
@@ -173,9 +175,9 @@ function makeHelp() {
         parts.push(...helpRows('Mouse', mouse),
                    ...helpRows('Keys', keys.map(([name, text]) => [keyCells(name), texts[name] || text])));
     else
-        parts.push(...helpRows('Buttons', ['loop', 'reset', 'shot', 'more', 'full'].filter(id => !$(id).hidden).map(id => {
+        parts.push(...helpRows('Buttons', ['mute', 'loop', 'reset', 'shot', 'more', 'full'].filter(id => !$(id).hidden).map(id => {
             const cell = element('th');
-            cell.append(icon(`i-${id}`));
+            cell.append(icon(id === 'mute' ? 'i-sound' : `i-${id}`));
             return [cell, $(id).getAttribute('aria-label')];
         })));
     $('help').replaceChildren(closeButton('help'), ...parts);

@@ -10,8 +10,9 @@ function readSettings() {
     return settings ? JSON.parse(settings.textContent) : {};
 }
 
-/** The poster and the title belong to the scene in the page. */
+/** The poster, the title and the sound belong to the scene in the page. */
 function removeCard() {
+    removeSound();
     for (const id of ['poster', 'backdrop', 'card'])
         if ($(id))
             $(id).remove();
@@ -74,8 +75,11 @@ async function start() {
             parameters.set('autoplay', '1');
         showProgress(0, 0);
     }
+    if (inside && !source)
+        openSound();
     await load();
     listen();
+    listenToMute();
     if (source)
         openScene(() => sceneAt(source), wishesOf({}, parameters, true));
     else if (inside)

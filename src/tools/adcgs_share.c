@@ -8,6 +8,7 @@
 #include "io/file.h"
 #include "io/operand.h"
 #include "tools/share_poster.h"
+#include "tools/share_sound.h"
 
 #include <adcgs/adcgs.h>
 
@@ -18,9 +19,9 @@
 
 typedef struct settings {
     const adcgs_cli *cli;
-    const char *output, *title, *credit, *camera, *poster, *background, *image, *page;
-    double time;
-    int has_time, loop, quiet;
+    const char *output, *title, *credit, *camera, *poster, *background, *image, *sound, *page;
+    double time, sound_offset;
+    int has_time, has_sound_offset, loop, quiet;
 } settings;
 
 /** The contents of a page. */
@@ -39,9 +40,12 @@ static adcgs_status check_settings(const settings *s, const char *path, adcgs_er
     const char *needs = s->camera                                ? "--camera"
                         : s->has_time                            ? "--time"
                         : s->poster && strcmp(s->poster, "none") ? "--poster"
+                        : s->sound                               ? "--sound"
                                                                  : NULL;
     if (!path && needs)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: needs a scene: name its FILE", needs);
+    if (s->has_sound_offset && !s->sound)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--sound-offset: needs a sound: name it with --sound FILE");
     const char *colour = s->background;
     if (colour && (*colour != '#' || strlen(colour) != 7 || strspn(colour + 1, "0123456789abcdefABCDEF") != 6))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--background %.40s: expected a colour as #rrggbb", colour);
@@ -103,7 +107,10 @@ static adcgs_status write_page(const settings *s, const char *path, const parts 
     adcgs_share_write(out.file, (const char *)p->page, p->page_bytes, &p->scene);
     const long bytes = ftell(out.file);
     ADCGS_TRY(adcgs_atomic_commit(&out, error));
-    if (path)
+    if (path && s->sound)
+        adcgs_cli_note(s->cli, "%s: %ld bytes, with a scene of %zu bytes, a poster of %zu and a sound of %zu", s->output, bytes,
+                       p->stream_bytes, p->scene.poster.bytes, p->scene.sound.bytes);
+    else if (path)
         adcgs_cli_note(s->cli, "%s: %ld bytes, with a scene of %zu bytes and a poster of %zu", s->output, bytes, p->stream_bytes,
                        p->scene.poster.bytes);
     else
@@ -122,6 +129,8 @@ static adcgs_status make_page(const settings *s, const char *path, parts *p, adc
         p->scene.bytes = p->stream_bytes;
         ADCGS_TRY(prepare_scene(s, path, p, error));
     }
+    if (s->sound)
+        ADCGS_TRY(adcgs_share_load_sound(&p->scene.sound, s->sound, error));
     ADCGS_TRY(load_page(p, s->page, error));
     return write_page(s, path, p, error);
 }
@@ -136,7 +145,8 @@ static adcgs_status share(const settings *s, const char *path, adcgs_error *erro
                          .camera = -1,
                          .has_time = s->has_time,
                          .time = s->time,
-                         .is_once = s->loop}};
+                         .is_once = s->loop,
+                         .sound = {.offset = s->sound_offset}}};
     if (!s->output)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "no output: give -o PAGE.html");
     if (path && adcgs_atomic_same(path, s->output))
@@ -147,11 +157,12 @@ static adcgs_status share(const settings *s, const char *path, adcgs_error *erro
     free(p.stream);
     free(p.name);
     free(p.scene.poster.data);
+    free(p.scene.sound.data);
     return status;
 }
 
-/** Fills the table of options, with targets in s. */
-static void list_options(adcgs_option_table *out, settings *s)
+/** Lists the options for texts and the first view, with targets in s. */
+static void add_view_options(adcgs_option_table *out, settings *s)
 {
     const adcgs_option table[] = {
         {"output", 'o', ADCGS_OPTION_STRING, &s->output, 0, 0, "PAGE.html", "page to write", NULL, NULL},
@@ -185,6 +196,27 @@ static void list_options(adcgs_option_table *out, settings *s)
          .target = &s->poster,
          .value = "FILE|none",
          .help = "JPEG or PNG image to show until the scene plays\n(default: the first frame, rendered)"},
+    };
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
+}
+
+/** Lists the options for sound, playback, links and the page itself. */
+static void add_page_options(adcgs_option_table *out, settings *s)
+{
+    const adcgs_option table[] = {
+        {.name = "sound",
+         .kind = ADCGS_OPTION_FILE,
+         .target = &s->sound,
+         .value = "FILE",
+         .help = "sound that plays with the scene, as Opus (default: none)"},
+        {.name = "sound-offset",
+         .kind = ADCGS_OPTION_SECONDS,
+         .target = &s->sound_offset,
+         .min = -1e6,
+         .max = 1e6,
+         .given = &s->has_sound_offset,
+         .value = "TIME",
+         .help = "time of the stream at which the sound begins (default: 0)"},
         {.name = "loop",
          .kind = ADCGS_OPTION_CHOICE,
          .target = &s->loop,
@@ -214,7 +246,8 @@ int main(int argc, char **argv)
 {
     settings s = {.page = PAGE_FILE};
     adcgs_option_table options = {.n = 0};
-    list_options(&options, &s);
+    add_view_options(&options, &s);
+    add_page_options(&options, &s);
     const adcgs_cli cli = {.program = "adcgs-share",
                            .operands = "[FILE]",
                            .summary = "Make a page for browsers of a stream: one file with the decoder and the scene.",

@@ -135,6 +135,12 @@ static void write_scene(FILE *file, const adcgs_share_scene *scene)
     fputs("\">\n", file);
     adcgs_base64_write(file, scene->data, scene->bytes, 1);
     fputs("</script>\n", file);
+    if (!scene->sound.data)
+        return;
+    fprintf(file, "<script type=\"text/plain\" id=\"sound\" data-type=\"%s\" data-offset=\"%.17g\">\n", scene->sound.type,
+            scene->sound.offset);
+    adcgs_base64_write(file, scene->sound.data, scene->sound.bytes, 1);
+    fputs("</script>\n", file);
 }
 
 void adcgs_share_write(FILE *file, const char *page, size_t bytes, const adcgs_share_scene *scene)

@@ -15,6 +15,14 @@ typedef struct adcgs_share_poster {
     const char *type; /**< "image/jpeg" */
 } adcgs_share_poster;
 
+/** The sound that the page plays with the scene: a file's bytes. */
+typedef struct adcgs_share_sound {
+    uint8_t *data; /**< from malloc(); NULL: no sound */
+    size_t bytes;
+    const char *type; /**< "audio/ogg" */
+    double offset;    /**< time of the scene at which the file begins, seconds */
+} adcgs_share_sound;
+
 typedef struct adcgs_share_scene {
     const char *name;       /**< of the scene's file; NULL: no scene */
     const char *title;      /**< NULL: the name without its folder and its ending */
@@ -28,6 +36,7 @@ typedef struct adcgs_share_scene {
     const uint8_t *data;
     size_t bytes;
     adcgs_share_poster poster;
+    adcgs_share_sound sound;
 } adcgs_share_scene;
 
 /** ADCGS_ERR_DATA if the page lacks one of the places that the scene needs. path is for messages. */

@@ -4,7 +4,7 @@
 //
 //   const browser = await openBrowser('chromium' or 'firefox', command, folder for its profile, { width, height });
 //   await browser.go(url); await browser.run('script, which may return a promise'); await browser.shot('file.png');
-//   await browser.close();
+//   await browser.click('#play'), as a user does; await browser.close();
 //
 // More options: flags of the command (Chromium), reduced (the user prefers less motion), phone (touch, Chromium). browser.messages
 // has the messages of the console (Chromium).
@@ -92,6 +92,14 @@ async function openChromium(command, profile, { width, height, flags = [], reduc
                 throw new Error(exceptionDetails.exception?.description || exceptionDetails.text);
             return result.value;
         },
+        async click(selector) {
+            const { result } = await ask('Runtime.evaluate', { returnByValue: true, expression: `(() => {
+                const box = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect();
+                return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+            })()` }, sessionId);
+            for (const type of ['mousePressed', 'mouseReleased'])
+                await ask('Input.dispatchMouseEvent', { type, ...result.value, button: 'left', clickCount: 1 }, sessionId);
+        },
         async shot(file) {
             const { data } = await ask('Page.captureScreenshot', { format: 'png' }, sessionId);
             writeFileSync(file, Buffer.from(data, 'base64'));
@@ -150,6 +158,10 @@ async function openFirefox(command, profile, { width, height, reduced }) {
             if (value.error)
                 throw new Error(value.error);
             return value.value;
+        },
+        async click(selector) {
+            const { value } = await ask('WebDriver:FindElement', { using: 'css selector', value: selector });
+            await ask('WebDriver:ElementClick', { id: Object.values(value)[0] });
         },
         async shot(file) {
             const { value } = await ask('WebDriver:TakeScreenshot', { full: false });

@@ -80,6 +80,17 @@ poster "$dir/p.html" | cmp - "$dir/poster.jpg" || bad "a poster from a file"
 expect 0 "and a poster of 0" share "$stream" -o "$dir/p.html" --poster none
 ! grep -q '<svg id="poster"' "$dir/p.html" || bad "a poster, although none was wanted"
 
+# A sound: its bytes, its type and its time.
+printf 'OggS and more' >"$dir/a.opus"
+expect 0 "and a sound of 13" share "$stream" -o "$dir/p.html" --sound "$dir/a.opus" --sound-offset -0.5
+grep -q '<script type="text/plain" id="sound" data-type="audio/ogg" data-offset="-0.5">' "$dir/p.html" || bad "the sound's place"
+sed -n '/id="sound"/,/<\/script>/p' "$dir/p.html" | sed '1d;$d' | base64 -d | cmp - "$dir/a.opus" || bad "another sound"
+for type in '\032\105\337\243 webm' '....ftypM4A mp4' 'RIFF....WAVE wav' 'fLaC flac' 'ID3 mpeg' '\377\373 mpeg'; do
+    printf '%b' "${type% *}" >"$dir/a.bin"
+    expect 0 "" share "$stream" -o "$dir/p.html" --sound "$dir/a.bin"
+    grep -q "id=\"sound\" data-type=\"audio/${type##* }\"" "$dir/p.html" || bad "the type of $type"
+done
+
 # Without a scene.
 expect 0 "without a scene" share -o "$dir/player.html"
 bare "$dir/player.html" | cmp - <(sed '/^<!-- poster -->$/d' "$page") || bad "the page without a scene is another one"
@@ -96,6 +107,12 @@ expect 2 "as #rrggbb" share "$stream" -o "$dir/kept.html" --background '#12345'
 expect 2 "begins with https://" share "$stream" -o "$dir/kept.html" --image 'javascript:1'
 expect 2 "loop" share "$stream" -o "$dir/kept.html" --loop maybe
 expect 2 "needs a scene" share -o "$dir/kept.html" --camera 0
+expect 2 "needs a scene" share -o "$dir/kept.html" --sound "$dir/a.opus"
+expect 2 "needs a sound" share "$stream" -o "$dir/kept.html" --sound-offset 1
+expect 3 "none.opus" share "$stream" -o "$dir/kept.html" --sound "$dir/none.opus"
+expect 4 "no sound, expected Ogg" share "$stream" -o "$dir/kept.html" --sound "$stream"
+: >"$dir/empty.opus"
+expect 4 "no sound, expected Ogg" share "$stream" -o "$dir/kept.html" --sound "$dir/empty.opus"
 expect 3 "No such file" share "$stream" -o "$dir/kept.html" --poster "$dir/none.jpg"
 expect 4 "expected a JPEG or PNG image" share "$stream" -o "$dir/kept.html" --poster "$stream"
 head -c 100 "$dir/poster.jpg" >"$dir/half.jpg"

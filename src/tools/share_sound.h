@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The sound of a page: a file that browsers decode. */
+#ifndef ADCGS_TOOLS_SHARE_SOUND_H
+#define ADCGS_TOOLS_SHARE_SOUND_H
+
+#include "tools/share_page.h"
+
+/** Loads a sound file, whose bytes become the page's sound. */
+adcgs_status adcgs_share_load_sound(adcgs_share_sound *sound, const char *path, adcgs_error *error);
+
+#endif
