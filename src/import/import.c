@@ -7,6 +7,7 @@
 #include "data/paths.h"
 #include "import/colmap_run.h"
 #include "import/pose_judge.h"
+#include "import/scene_sound.h"
 #include "import/scene_write.h"
 #include "io/atomic.h"
 #include "io/file.h"
@@ -158,6 +159,8 @@ static adcgs_status make_scene(adcgs_import_job *job, const adcgs_colmap_program
     adcgs_status status = adcgs_import_judge(job);
     if (status == ADCGS_OK && job->sources.kind == ADCGS_FOOTAGE_RIG)
         status = adcgs_import_videos(job);
+    if (status == ADCGS_OK)
+        status = adcgs_import_sound(&poses, job);
     if (status == ADCGS_OK)
         status = adcgs_import_write(&poses, job);
     adcgs_poses_clear(&poses);

@@ -58,6 +58,8 @@ typedef struct adcgs_import_report {
     double seconds;           /**< of the footage */
     int width, height;        /**< of the first image */
     const char *hdr;          /**< "HLG" or "PQ" if a video has high dynamic range, which is converted; else NULL */
+    int has_sound;            /**< the scene has the sound of a video */
+    char sound_fault[200];    /**< why a sound was left out; empty: none was */
     int is_numbered;          /**< images without times whose names only count: possibly frames of a video */
 } adcgs_import_report;
 

@@ -4,6 +4,7 @@
 
 #include "import/scene_write.h"
 
+#include "import/scene_sound.h"
 #include "data/paths.h"
 #include "io/atomic.h"
 #include "io/extension.h"
@@ -101,6 +102,10 @@ static adcgs_status fill(adcgs_json *json, const adcgs_poses *poses, const adcgs
     adcgs_json_string(json, "up", "z");
     if (poses->model.points.n)
         adcgs_json_string(json, "points", "points.ply");
+    if (job->report->has_sound) {
+        adcgs_json_string(json, "sound", ADCGS_IMPORT_SOUND);
+        write_number(json, "sound_offset", adcgs_import_begin(poses, job));
+    }
     adcgs_json_open(json, "cameras", '[');
     for (uint32_t i = 0; i < poses->n; i++)
         ADCGS_TRY(write_camera(json, job, &poses->posed[i]));

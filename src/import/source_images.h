@@ -16,6 +16,8 @@ typedef struct adcgs_source_image_camera {
     char *video;                          /**< its footage; NULL: images */
     int64_t frames;                       /**< of the video */
     adcgs_fps rate;
+    int has_sound;
+    double start;    /**< of the video's first frame, by the clock of its file */
     char key[160];   /**< for images: properties that distinguish cameras */
     double focal;    /**< approximate focal length over the longer side; 0: unknown */
     uint32_t images; /**< number of its source images */

@@ -34,6 +34,8 @@ static adcgs_status add_camera(adcgs_source_images *sources, const char *path, c
         snprintf(camera->folder, sizeof camera->folder, "lens-%dx%d", info->width, info->height);
     camera->frames = info->frames;
     camera->rate = info->rate;
+    camera->has_sound = info->has_sound;
+    camera->start = info->start;
     camera->video = strdup(path);
     return camera->video ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
 }

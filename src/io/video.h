@@ -21,6 +21,8 @@ typedef struct adcgs_video_info {
     adcgs_fps rate;    /**< the mean rate; always known */
     const char *hdr;   /**< name of the first frame's high dynamic range, "HLG" or "PQ", which is converted; NULL: none */
     const char *round; /**< projection of a panorama, as "equirectangular"; NULL: an ordinary lens */
+    int has_sound;     /**< the file has a sound track, which is not read */
+    double start;      /**< time of the first frame by the clock of the file, which the sound shares, seconds */
 } adcgs_video_info;
 
 /** True if the name ends like a video file's (mp4, mov, mkv, webm, avi, m4v, ...). */

@@ -247,6 +247,21 @@ static adcgs_fps mean_rate(const adcgs_video_reader *r)
     return num > 0 && den > 0 ? (adcgs_fps){(uint32_t)num, (uint32_t)den} : unknown;
 }
 
+static void describe(const adcgs_video_reader *r, adcgs_fps rate, adcgs_video_info *info)
+{
+    const AVFormatContext *const format = r->input.format;
+    *info = (adcgs_video_info){.width = r->width,
+                               .height = r->height,
+                               .frames = r->index.frames,
+                               .rate = rate,
+                               .hdr = adcgs_hdr_name(adcgs_video_hdr(r->frame)),
+                               .round = adcgs_video_input_projection(&r->input)};
+    for (unsigned i = 0; i < format->nb_streams; i++)
+        info->has_sound |= format->streams[i]->codecpar->codec_type == AVMEDIA_TYPE_AUDIO;
+    if (r->index.timed)
+        info->start = (double)r->index.packet[r->index.shown[0]].pts * av_q2d(r->input.stream->time_base);
+}
+
 static adcgs_status open_file(adcgs_video_reader *r, adcgs_error *error)
 {
     struct stat status;
@@ -272,12 +287,7 @@ static adcgs_status open_reader(adcgs_video_reader *r, adcgs_video_info *info, a
     r->width = first.width;
     r->height = first.height;
     adcgs_image_free(&first);
-    *info = (adcgs_video_info){.width = r->width,
-                               .height = r->height,
-                               .frames = r->index.frames,
-                               .rate = rate,
-                               .hdr = adcgs_hdr_name(adcgs_video_hdr(r->frame)),
-                               .round = adcgs_video_input_projection(&r->input)};
+    describe(r, rate, info);
     return ADCGS_OK;
 }
 

@@ -13,8 +13,8 @@
 #define FILE_VERSION 1
 #define UNIT_METRE 1 /* a code of adcgs_stream */
 
-static const char *const root_fields[] = {"adcgs_scene", "name",         "frame_rate", "scale",   "unit", "up",
-                                          "points",      "points_scale", "defaults",   "cameras", NULL};
+static const char *const root_fields[] = {"adcgs_scene",  "name",  "frame_rate",   "scale",    "unit",    "up", "points",
+                                          "points_scale", "sound", "sound_offset", "defaults", "cameras", NULL};
 
 /* ---- Times ---- */
 
@@ -104,6 +104,17 @@ static adcgs_status read_points(const adcgs_scene_reader *r, const adcgs_json_pl
     return ADCGS_OK;
 }
 
+/** Checks the fields of the sound, which players use and training does not. */
+static adcgs_status check_sound(const adcgs_json_place *at)
+{
+    const char *sound;
+    double offset = 0.0;
+    int found;
+    ADCGS_TRY(adcgs_scene_camera_string(at, "sound", &sound));
+    ADCGS_TRY(adcgs_json_number(at, "sound_offset", -1e6, 1e6, &offset, &found));
+    return sound || !found ? ADCGS_OK : adcgs_json_bad(at, ADCGS_ERR_DATA, "sound_offset", "expected a sound as well");
+}
+
 static adcgs_status read_root(adcgs_scene_reader *r, int with_points)
 {
     const adcgs_json_place at = {.path = r->path, .root = r->root, .error = r->error};
@@ -115,6 +126,7 @@ static adcgs_status read_root(adcgs_scene_reader *r, int with_points)
     ADCGS_TRY(adcgs_scene_camera_fields(&at, "", r->root, root_fields));
     ADCGS_TRY(adcgs_scene_camera_string(&at, "name", &name));
     ADCGS_TRY(read_world(r, &at));
+    ADCGS_TRY(check_sound(&at));
     ADCGS_TRY(adcgs_scene_cameras_read(r, &at));
     if (r->listing)
         return ADCGS_OK;

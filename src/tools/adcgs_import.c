@@ -4,7 +4,7 @@
 
 #include "cli/text.h"
 #include "data/scene.h"
-#include "import/import.h"
+#include "import/scene_sound.h"
 #include "io/json.h"
 
 #include <stdio.h>
@@ -64,6 +64,8 @@ static adcgs_status print_json(const adcgs_import_report *r, const char *output,
     adcgs_json_real(&j, "seconds", r->seconds);
     adcgs_json_int(&j, "width", r->width);
     adcgs_json_int(&j, "height", r->height);
+    if (r->has_sound)
+        adcgs_json_string(&j, "sound", ADCGS_IMPORT_SOUND);
     adcgs_json_close(&j);
     return adcgs_json_write(&j, stdout, "standard output", error);
 }
@@ -101,6 +103,8 @@ static void warn(const adcgs_cli *cli, const adcgs_import_report *r)
     if (r->hdr)
         adcgs_cli_note(cli, "the video is of high dynamic range (%s): its frames are converted to the range of plain screens",
                        r->hdr);
+    if (*r->sound_fault)
+        adcgs_cli_note(cli, "the video's sound was left out: %s", r->sound_fault);
     if (r->is_numbered)
         adcgs_cli_note(cli, "the images' names are plain numbers: if they are frames of a video, --fps N keeps their times; "
                             "without it this scene is static");

@@ -131,6 +131,34 @@ if grep -q '^neu3d-videos' "$dir/kinds"; then
     done
     called 'default_focal_length_factor 0.4'
     expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q
+    # The sound of a video: a tone from 0.5 s on, in a file whose sound begins 0.1 s after the images.
+    tone="aevalsrc='if(gt(t,0.4),sin(6283*t),0)':s=48000:d=0.9"
+    if ffmpeg -v error -f lavfi -i testsrc=size=24x16:rate=25:duration=1 -itsoffset 0.1 -f lavfi -i "$tone" -c:v mpeg4 -c:a aac \
+        "$dir/tone.mp4" 2>"$dir/err" && ffmpeg -v error -encoders 2>&1 | grep -q libopus; then
+        # heard PATH: the time of the tone, and the duration, in seconds.
+        heard() { ffmpeg -v error -i "$1" -f s16le -ac 1 -ar 8000 - | od -An -v -td2 -w2 |
+            awk '!n && ($1 > 3000 || $1 < -3000) { n = NR } END { printf "%.2f %.1f\n", n / 8000, NR / 8000 }'; }
+        import 0 '' "$dir/tone.mp4"
+        has '"sound":"sound.opus","cameras"'
+        [ "$(heard "$dir/s/sound.opus")" = '0.50 1.0' ] || bad "the tone at $(heard "$dir/s/sound.opus")"
+        expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q
+        # The first images have no pose: the stream and the sound begin later, together.
+        FAKE_HOW=late import 0 '' "$dir/tone.mp4" --json
+        has '"sound":"sound.opus","sound_offset":0.2,'
+        [ "$(heard "$dir/s/sound.opus")" = '0.30 0.8' ] || bad "the tone at $(heard "$dir/s/sound.opus"), without the first images"
+        grep -q '"sound": "sound.opus"' "$dir/out" || bad "JSON of the sound"
+        # Without ffmpeg, and with one that fails, the scene has no sound.
+        mkdir "$dir/path"
+        for tool in bash cat find mkdir sed sort; do ln -s "$(command -v $tool)" "$dir/path"; done
+        rm -rf "$dir/s"
+        expect 0 "sound was left out: no program ffmpeg" env PATH="$dir/path" ./adcgs-import --colmap "$fake" -o "$dir/s" "$dir/tone.mp4"
+        printf '#!/bin/sh\necho no such encoder >&2\nexit 1\n' >"$dir/path/ffmpeg" && chmod +x "$dir/path/ffmpeg"
+        PATH=$dir/path:$PATH import 0 "sound was left out: ffmpeg: no such encoder" "$dir/tone.mp4"
+        plain | grep -q sound && bad "a sound that is not there"
+        none "$dir/s/sound.opus"
+    else
+        echo "skipped: the sound of a video: no ffmpeg with Opus"
+    fi
     import 2 'not both' "$dir/neu3d-videos/cam03.mp4" "$pictures"
     import 2 'has times of its own' --fps 3 "$dir/neu3d-videos/cam03.mp4"
     # Cameras of 360 degrees: two fisheyes in a file, by its name or its end, are reported.

@@ -88,6 +88,14 @@ if grep -q '^neu3d-videos' "$dir/kinds"; then
 else
     partial adcgs-import "this build reads no videos"
 fi
+if ! ffmpeg -v error -f lavfi -i testsrc=size=24x16:duration=1 -f lavfi -i sine=duration=1 -c:v mpeg4 -c:a aac "$dir/sound.mp4" 2>"$dir/err"; then
+    partial adcgs-import "no ffmpeg that makes a video with sound"
+elif [ "$names" = film ] || ! ffmpeg -v error -encoders | grep -q libopus; then
+    partial adcgs-import "no ffmpeg with Opus"
+else
+    import sound ./adcgs-import "$dir/sound.mp4"
+    names="$names sound"
+fi
 for name in $names; do
     sample adcgs-import "$dir/$name.json"
     sample "scene file" "$dir/imported-$name/scene.json"

@@ -157,6 +157,12 @@ static void test_points(void **state)
     assert_true(scene->points.position[0][2] == 3.0);
 }
 
+/** The sound is for players: its fields are checked, and the file need not exist. */
+static void test_sound(void **state)
+{
+    open_good(FILE_OF(",\"sound\":\"s.opus\",\"sound_offset\":0.2", CAMERA("," IDENTITY)));
+}
+
 static void expect_bad(const char *text, const char *what)
 {
     put_text("s.json", text);
@@ -179,6 +185,9 @@ static void test_bad(void **state)
     expect_bad(FILE_OF(",\"defaults\":{\"name\":\"x\"}", CAMERA("," IDENTITY)), "defaults.name: unknown field");
     expect_bad(FILE_OF(",\"defaults\":[]", CAMERA("," IDENTITY)), "defaults: expected an object");
     expect_bad(FILE_OF(",\"unit\":\"inch\"", CAMERA("," IDENTITY)), "unit: inch");
+    expect_bad(FILE_OF(",\"sound\":7", CAMERA("," IDENTITY)), "sound: expected a text");
+    expect_bad(FILE_OF(",\"sound_offset\":1", CAMERA("," IDENTITY)), "sound_offset: expected a sound");
+    expect_bad(FILE_OF(",\"sound\":\"s\",\"sound_offset\":1e7", CAMERA("," IDENTITY)), "sound_offset: 1e+07");
     expect_bad(FILE_OF(",\"up\":\"x\"", CAMERA("," IDENTITY)), "up: x");
     expect_bad(FILE_OF(",\"scale\":0", CAMERA("," IDENTITY)), "scale: 0");
     expect_bad(FILE_OF("", CAMERA("," IDENTITY) "," CAMERA("," IDENTITY)), "cameras[1].name: a is used twice");
@@ -308,8 +317,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_poses, close_it),       cmocka_unit_test_teardown(test_intrinsics, close_it),
         cmocka_unit_test_teardown(test_times, close_it),       cmocka_unit_test_teardown(test_points, close_it),
-        cmocka_unit_test_teardown(test_bad, close_it),         cmocka_unit_test_teardown(test_bad_footage, close_it),
-        cmocka_unit_test_teardown(test_calibration, close_it),
+        cmocka_unit_test_teardown(test_sound, close_it),       cmocka_unit_test_teardown(test_bad, close_it),
+        cmocka_unit_test_teardown(test_bad_footage, close_it), cmocka_unit_test_teardown(test_calibration, close_it),
     };
     return cmocka_run_group_tests(tests, setup, remove_folder);
 }
