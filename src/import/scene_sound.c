@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The sound of a video, kept beside the scene. */
+/** \file The sound of a video, kept next to the scene. */
 #include "config.h"
 
 #include "import/scene_sound.h"

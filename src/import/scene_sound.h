@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The sound of a video, kept beside the scene. */
+/** \file The sound of a video, kept next to the scene. */
 #ifndef ADCGS_IMPORT_SCENE_SOUND_H
 #define ADCGS_IMPORT_SCENE_SOUND_H
 

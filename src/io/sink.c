@@ -194,7 +194,7 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
     if (config->has_alpha && flat)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: alpha needs EXR, PNG, TIFF or a video", config->target);
     if (config->video && what != &video_kind)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: codecs and their options are for videos", config->target);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: codecs, their options and sounds are for videos", config->target);
     if (config->has_z && what != &exr_kind)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: depth needs EXR", config->target);
     if (config->linear && what != &exr_kind)

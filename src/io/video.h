@@ -52,8 +52,10 @@ typedef struct adcgs_video_style {
     const char *options; /**< for the encoder, in FFmpeg's form: "name=value:name=value"; also pix_fmt. NULL: none */
     double crf;          /**< constant rate factor, if has_crf */
     int has_crf;
-    uint64_t bit_rate; /**< bits per second; 0: by quality */
-    int has_alpha;     /**< frames have alpha, which the codec must support */
+    uint64_t bit_rate;  /**< bits per second; 0: by quality */
+    const char *sound;  /**< file whose sound goes into the video unchanged; NULL: none */
+    double sound_start; /**< position in it at the first frame, seconds; negative: the sound begins later */
+    int has_alpha;      /**< frames have alpha, which the codec must support */
 } adcgs_video_style;
 
 /** Start a video. Container by extension; BT.709 of limited range, or RGB, tagged accordingly. */

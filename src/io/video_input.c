@@ -59,11 +59,11 @@ static adcgs_status open_io(adcgs_video_input *input, adcgs_error *error)
     return input->io ? ADCGS_OK : no_memory(input, error);
 }
 
-static adcgs_status open_format(adcgs_video_input *input, adcgs_error *error)
+static adcgs_status open_format(adcgs_video_input *input, const char *allowed, const char *kind, adcgs_error *error)
 {
     AVDictionary *options = NULL;
     input->format = avformat_alloc_context();
-    if (!input->format || av_dict_set(&options, "format_whitelist", formats, 0) < 0) {
+    if (!input->format || av_dict_set(&options, "format_whitelist", allowed, 0) < 0) {
         av_dict_free(&options);
         return no_memory(input, error);
     }
@@ -74,13 +74,13 @@ static adcgs_status open_format(adcgs_video_input *input, adcgs_error *error)
     if (code == AVERROR(ENOMEM))
         return no_memory(input, error);
     if (code < 0)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a video, or its beginning is damaged: %s", input->path,
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not %s, or its beginning is damaged: %s", input->path, kind,
                           av_err2str(code));
     return ADCGS_OK;
 }
 
 /** Read the headers of all streams, and their first packets if the container does not describe them. */
-static adcgs_status find_streams(adcgs_video_input *input, adcgs_error *error)
+static adcgs_status find_streams(adcgs_video_input *input, const char *kind, adcgs_error *error)
 {
     const unsigned n = input->format->nb_streams;
     AVDictionary **options = av_calloc((size_t)n + 1, sizeof *options);
@@ -95,7 +95,7 @@ static adcgs_status find_streams(adcgs_video_input *input, adcgs_error *error)
     av_free(options);
     if (code == AVERROR(ENOMEM))
         return no_memory(input, error);
-    return code < 0 ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: no video, or a damaged one: %s", input->path, av_err2str(code))
+    return code < 0 ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: not %s, or a damaged one: %s", input->path, kind, av_err2str(code))
                     : ADCGS_OK;
 }
 
@@ -143,11 +143,16 @@ static adcgs_status open_codec(adcgs_video_input *input, adcgs_error *error)
                     : ADCGS_OK;
 }
 
-adcgs_status adcgs_video_input_open(adcgs_video_input *input, adcgs_error *error)
+adcgs_status adcgs_video_input_attach(adcgs_video_input *input, const char *allowed, const char *kind, adcgs_error *error)
 {
     ADCGS_TRY(open_io(input, error));
-    ADCGS_TRY(open_format(input, error));
-    ADCGS_TRY(find_streams(input, error));
+    ADCGS_TRY(open_format(input, allowed, kind, error));
+    return find_streams(input, kind, error);
+}
+
+adcgs_status adcgs_video_input_open(adcgs_video_input *input, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_video_input_attach(input, formats, "a video", error));
     ADCGS_TRY(choose_stream(input, error));
     return open_codec(input, error);
 }

@@ -21,6 +21,11 @@ typedef struct adcgs_video_input {
     AVCodecContext *codec;
 } adcgs_video_input;
 
+/**
+ * Opens the container alone, of one of these formats of FFmpeg, at the file's beginning, and describes its streams. kind: "a
+ * video", for messages. input->fd and path must be set. Call adcgs_video_input_close() after failure, too.
+ */
+adcgs_status adcgs_video_input_attach(adcgs_video_input *input, const char *formats, const char *kind, adcgs_error *error);
 /** Open from the file's beginning. input->fd and path must be set. Call adcgs_video_input_close() after failure, too. */
 adcgs_status adcgs_video_input_open(adcgs_video_input *input, adcgs_error *error);
 void adcgs_video_input_close(adcgs_video_input *input);

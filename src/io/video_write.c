@@ -8,6 +8,7 @@
 #include "io/extension.h"
 #include "io/video_codec.h"
 #include "io/video_planes.h"
+#include "io/video_sound.h"
 
 #include <errno.h>
 #include <libavformat/avformat.h>
@@ -28,6 +29,7 @@ struct adcgs_video_encoder {
     AVStream *stream;
     AVFrame *frame;
     AVPacket *packet;
+    adcgs_video_sound sound; /* open if its output is set */
     int64_t frames;
     int reason; /* errno of the first write that failed */
 };
@@ -145,7 +147,7 @@ static int open_frame(adcgs_video_encoder *e)
     return av_frame_get_buffer(e->frame, 0);
 }
 
-static int open_container(adcgs_video_encoder *e)
+static int open_stream(adcgs_video_encoder *e)
 {
     e->stream = avformat_new_stream(e->format, NULL);
     if (!e->stream)
@@ -155,8 +157,7 @@ static int open_container(adcgs_video_encoder *e)
     e->stream->sample_aspect_ratio = e->codec->sample_aspect_ratio;
     if (e->target.style.has_alpha) /* WebM stores alpha separately and must declare it */
         av_dict_set(&e->stream->metadata, "alpha_mode", "1", 0);
-    const int code = avcodec_parameters_from_context(e->stream->codecpar, e->codec);
-    return code < 0 ? code : avformat_write_header(e->format, NULL);
+    return avcodec_parameters_from_context(e->stream->codecpar, e->codec);
 }
 
 static adcgs_status begin_with(adcgs_video_encoder *e, adcgs_video_codec *chosen, adcgs_error *error)
@@ -171,7 +172,12 @@ static adcgs_status begin_with(adcgs_video_encoder *e, adcgs_video_codec *chosen
     code = open_frame(e);
     if (code < 0)
         return fail(e, code, "encode frames of this size", error);
-    code = open_container(e);
+    code = open_stream(e);
+    const adcgs_video_style *const style = &e->target.style;
+    if (code >= 0 && style->sound)
+        ADCGS_TRY(adcgs_video_sound_open(&e->sound, style->sound, style->sound_start, e->format, e->target.path, error));
+    if (code >= 0)
+        code = avformat_write_header(e->format, NULL);
     return code < 0 ? fail(e, code, "start the file", error) : ADCGS_OK;
 }
 
@@ -212,6 +218,7 @@ void adcgs_video_encoder_free(adcgs_video_encoder **encoder)
     adcgs_video_encoder *e = *encoder;
     if (!e)
         return;
+    adcgs_video_sound_close(&e->sound);
     av_frame_free(&e->frame);
     av_packet_free(&e->packet);
     avcodec_free_context(&e->codec);
@@ -224,6 +231,14 @@ void adcgs_video_encoder_free(adcgs_video_encoder **encoder)
 }
 
 /* ---- Frames ---- */
+
+/** Writes the sound up to the end of the frames so far. */
+static adcgs_status write_sound(adcgs_video_encoder *e, adcgs_error *error)
+{
+    const double end = (double)e->frames * e->target.rate[1] / e->target.rate[0];
+    const int code = e->sound.output ? adcgs_video_sound_write(&e->sound, end) : 0;
+    return code < 0 ? fail(e, code, "copy the sound", error) : ADCGS_OK;
+}
 
 /** Encode a frame, or with NULL the delayed ones, and write the packets. */
 static adcgs_status encode(adcgs_video_encoder *e, const AVFrame *frame, adcgs_error *error)
@@ -256,7 +271,8 @@ adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *e, const adcgs_frame *
         return fail(e, code, "encode", error);
     ADCGS_TRY(adcgs_video_planes(e->frame, frame, alpha, error));
     e->frame->pts = e->frames++;
-    return encode(e, e->frame, error);
+    ADCGS_TRY(encode(e, e->frame, error));
+    return write_sound(e, error);
 }
 
 adcgs_status adcgs_video_encoder_end(adcgs_video_encoder *e, adcgs_error *error)

@@ -23,6 +23,8 @@
 #include <stdlib.h>
 #include <strings.h>
 
+#define SOUND_SLACK 0.02 /* seconds between the sound and the last frame, at most */
+
 typedef adcgs_dec_settings settings;
 
 static adcgs_status open_input(adcgs_decoder **decoder, adcgs_operand *source, const char *input, const settings *s,
@@ -133,9 +135,25 @@ static adcgs_status render(const settings *s, const streams *from, adcgs_camera_
     return status;
 }
 
+/** The style of the video, with the sound at the first frame's time. Frames must play at the speed of the scene. */
+static adcgs_status place_sound(adcgs_video_style *style, const settings *s, const adcgs_camera_path *frames, adcgs_error *error)
+{
+    const double begin = frames->frame[0].time, last = frames->frame[frames->n - 1].time;
+    *style = s->video;
+    style->sound_start = begin - s->sound_offset;
+    if (s->video.sound && fabs(last - begin - (frames->n - 1) / frames->frame_rate) > SOUND_SLACK)
+        return adcgs_fail(
+            error, ADCGS_ERR_USAGE,
+            "--sound: %d frames show %g s of the scene, and play for %g s: expected a path at the speed of the scene", frames->n,
+            last - begin, (frames->n - 1) / frames->frame_rate);
+    return ADCGS_OK;
+}
+
 static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_camera_path *frames, const adcgs_canvas *canvas,
                               adcgs_error *error)
 {
+    adcgs_video_style style;
+    ADCGS_TRY(place_sound(&style, s, frames, error));
     const adcgs_sink_config config = {.target = s->output,
                                       .format = s->format,
                                       .depth = s->use_float    ? ADCGS_DEPTH_FLOAT
@@ -148,7 +166,7 @@ static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_
                                       .height = canvas->shown.height,
                                       .frames = frames->n,
                                       .has_alpha = s->alpha,
-                                      .video = adcgs_dec_has_style(s) ? &s->video : NULL,
+                                      .video = adcgs_dec_has_style(s) ? &style : NULL,
                                       .has_z = s->depth};
     return s->output ? adcgs_sink_open(sink, &config, error) : ADCGS_OK;
 }

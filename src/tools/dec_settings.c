@@ -52,6 +52,9 @@ static void add_video_options(adcgs_option_table *out, adcgs_dec_settings *s)
          "bits per second of a video (8M) instead of a quality", NULL, NULL},
         {"codec-options", 0, ADCGS_OPTION_STRING, &s->video.options, 0, 0, "NAME=VALUE:...",
          "options of FFmpeg for the encoder, and pix_fmt", NULL, NULL},
+        {"sound", 0, ADCGS_OPTION_FILE, &s->video.sound, 0, 0, "FILE", "sound to put into a video, unchanged", NULL, NULL},
+        {"sound-offset", 0, ADCGS_OPTION_SECONDS, &s->sound_offset, -1e6, 1e6, "TIME",
+         "time of the stream at which the sound begins (default: 0)", NULL, &s->has_sound_offset},
     };
     adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
@@ -147,7 +150,7 @@ static void report_fault(void *user, adcgs_log_level level, const char *text)
 
 int adcgs_dec_has_style(const adcgs_dec_settings *s)
 {
-    return s->video.codec || s->video.has_crf || s->video.bit_rate || s->video.options;
+    return s->video.codec || s->video.has_crf || s->video.bit_rate || s->video.options || s->video.sound;
 }
 
 /** True if an option for the format of frames is given. */
@@ -155,6 +158,20 @@ static int shapes_output(const adcgs_dec_settings *s)
 {
     return s->format || s->half || s->use_float || s->linear || s->bits || s->alpha || s->depth || s->beside ||
            adcgs_dec_has_style(s);
+}
+
+/** Checks the options for the format of frames. */
+static adcgs_status check_output(const adcgs_dec_settings *s, adcgs_error *error)
+{
+    if (shapes_output(s) && !s->output)
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--format, --half, --float, --linear, --bits, --alpha, --depth, --codec, --crf, --bitrate, "
+                          "--codec-options, --sound and --beside need --output");
+    if (s->has_sound_offset && !s->video.sound)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--sound-offset needs --sound");
+    if (s->video.has_crf && s->video.bit_rate)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--crf and --bitrate exclude each other");
+    return ADCGS_OK;
 }
 
 /** Checks the options next to --play. */
@@ -216,12 +233,7 @@ adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
                           "--splats goes with --f-rest, --time, --layers, --strict, --threads and --cpu only");
     if (s->rest_degree && !s->splats)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--f-rest needs --splats");
-    if (shapes_output(s) && !s->output)
-        return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--format, --half, --float, --linear, --bits, --alpha, --depth, --codec, --crf, --bitrate, "
-                          "--codec-options and --beside need --output");
-    if (s->video.has_crf && s->video.bit_rate)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--crf and --bitrate exclude each other");
+    ADCGS_TRY(check_output(s, error));
     if ((s->fit || s->request.fill) && !s->request.size[0])
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--fit and --fill need --size");
     if (s->fit && s->request.fill)

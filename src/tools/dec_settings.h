@@ -17,6 +17,8 @@ typedef struct adcgs_dec_settings {
     adcgs_camera_path_request request;
     adcgs_config config;
     int quiet, order, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
+    int has_sound_offset;
+    double sound_offset;                 /**< time of the stream at which the sound begins, in seconds */
     double part;                         /**< part of the stream at which the frame lies (--time N%); negative: not given */
     double opened;                       /**< time before opening the input, in seconds */
     adcgs_operand source, beside_source; /**< of the bytes that the decoders still read */

@@ -73,7 +73,7 @@ fi
 expect 2 "standard output takes y4m" $dec "$s" -o - --format mp4
 expect 2 "must end in .mp4" $dec "$s" -o "$dir/x.mkv" --format mp4
 expect 2 "float" $dec "$s" -o "$dir/x.mp4" --float
-expect 2 "codecs and their options are for videos" $dec "$s" -o "$dir/x%d.png" --crf 20
+expect 2 "sounds are for videos" $dec "$s" -o "$dir/x%d.png" --crf 20
 expect 2 "exclude each other" $dec "$s" -o "$dir/x.mp4" --crf 20 --bitrate 1M
 expect 2 "need --output" $dec "$s" --md5 --codec ffv1
 if grep -q "define HAVE_FFMPEG" config.h; then
