@@ -139,17 +139,19 @@ class Gpu {
         this.sorted = indices.byteLength / 4;
     }
 
-    /** view: the 21 numbers of view_uniforms(). */
-    draw(view, width, height, background, filter) {
-        const gl = this.gl, u = this.uniform;
-        if (this.canvas.width !== width || this.canvas.height !== height) {
-            this.canvas.width = width;
-            this.canvas.height = height;
-        }
-        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    /** Begins an image: for each eye of a headset, and for the canvas, paint() follows. */
+    begin(framebuffer, width, height, background) {
+        const gl = this.gl;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
         gl.viewport(0, 0, width, height);
         gl.clearColor(background[0], background[1], background[2], 1);
         gl.clear(gl.COLOR_BUFFER_BIT);
+    }
+
+    /** view: the 21 numbers of view_uniforms(). box: x, y, width and height of its part of the image. */
+    paint(view, { x, y, width, height }, filter) {
+        const gl = this.gl, u = this.uniform;
+        gl.viewport(x, y, width, height);
         gl.enable(gl.BLEND);
         gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
         gl.useProgram(this.program);
@@ -165,6 +167,17 @@ class Gpu {
         gl.uniform1f(u.screen, filter);
         if (this.n && this.sorted === this.n)
             gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.n);
+    }
+
+    /** Renders an image of the canvas. */
+    draw(view, width, height, background, filter) {
+        const gl = this.gl;
+        if (this.canvas.width !== width || this.canvas.height !== height) {
+            this.canvas.width = width;
+            this.canvas.height = height;
+        }
+        this.begin(null, width, height, background);
+        this.paint(view, { x: 0, y: 0, width, height }, filter);
         this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
         this.since = performance.now();
         gl.flush();

@@ -22,6 +22,8 @@ const page = window.adcgs = {
     get generation() { return generation; }, // of the scene's state; that of the last image is in page.picture
     get gpu() { return gpu; },
     get sound() { return sound; },
+    get headset() { return headset; },
+    offerHeadset: () => offerHeadset(),
 };
 
 let worker, view, gpu = null;
@@ -84,9 +86,8 @@ function adapt() {
     gpu.took = 0;
 }
 
-/** Request the splats of the current time, and their order for the view. */
-function requestSplats(time) {
-    const direction = directionOf(cameraOf(1));
+/** Request the splats of a time, and their order for a direction of view. */
+function requestSplats(time, direction = directionOf(cameraOf(1))) {
     const turned = direction.some((d, i) => Math.abs(d - packed.direction[i]) > 1e-4);
     if (!packing && (packed.time !== time || packed.generation !== generation)) {
         packing = true;
@@ -146,7 +147,7 @@ function wake() {
 
 function step() {
     asked = false;
-    if (!information || !information.home)
+    if (!information || !information.home || headset)
         return;
     view.call.view_tick(performance.now() / 1000);
     followSound();

@@ -175,7 +175,7 @@ function makeHelp() {
         parts.push(...helpRows('Mouse', mouse),
                    ...helpRows('Keys', keys.map(([name, text]) => [keyCells(name), texts[name] || text])));
     else
-        parts.push(...helpRows('Buttons', ['mute', 'loop', 'reset', 'shot', 'more', 'full'].filter(id => !$(id).hidden).map(id => {
+        parts.push(...helpRows('Buttons', ['mute', 'loop', 'reset', 'shot', 'more', 'vr', 'full'].filter(id => !$(id).hidden).map(id => {
             const cell = element('th');
             cell.append(icon(id === 'mute' ? 'i-sound' : `i-${id}`));
             return [cell, $(id).getAttribute('aria-label')];

@@ -80,6 +80,7 @@ async function start() {
     await load();
     listen();
     listenToMute();
+    listenToHeadset();
     if (source)
         openScene(() => sceneAt(source), wishesOf({}, parameters, true));
     else if (inside)

@@ -3,8 +3,9 @@
 // FOLDER has s.adcgs and sound.html, whose scene lasts from 0.1 to 1.01 s and whose sound begins at 0.1 s; the sound of deaf.html is
 // damaged. Exits with 1 if something is wrong.
 import { readFileSync } from 'node:fs';
-import { at, browser, check, go, kind, run, runParts, same, urlOf } from './page_kit.mjs';
+import { at, browser, check, go, kind, run, runParts, same, samePicture, urlOf } from './page_kit.mjs';
 
+const STREAM = `${process.env.srcdir || '.'}/conformance/vectors/good-seq-gaps.adcgs`;
 const WITHIN = 0.04;                            // seconds: the sound's largest distance from the image
 const FRAME = 1 / 30;                           // seconds
 const BEGIN = 0.1, LOWEST = 500, RISE = 4000;   // the sound of test_page.sh: Hz at its beginning, and Hz/s
@@ -92,4 +93,93 @@ async function sound() {
     same(deaf, ['This browser cannot play the sound of this scene', true, 'complete'], 'a sound that no browser decodes');
 }
 
-await runParts([sound], 480, 360);
+/** Reads the image of each eye within a frame of the session: the mean place of its light, and its rows for a picture. */
+const EYES = `
+const eyes = () => new Promise((resolve, reject) => {
+    const { session, layer, gpu } = adcgs.headset, gl = gpu.gl;
+    const look = (time, frame) => {
+        try {
+            const pose = frame.getViewerPose(adcgs.headset.space), sums = pose.views.map(eye => {
+                const { x, y, width, height } = layer.getViewport(eye), rgba = new Uint8Array(4 * width * height);
+                gl.bindFramebuffer(gl.FRAMEBUFFER, layer.framebuffer);
+                gl.readPixels(x, y, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rgba);
+                const sum = [0, 0, 0];
+                for (let i = 0; i < width * height; i++) {
+                    const light = [0, 1, 2].reduce((sum, c) => sum + Math.abs(rgba[4 * i + c] - rgba[c]), 0);
+                    sum[0] += light;
+                    sum[1] += light * (i % width + 0.5);
+                    sum[2] += light * (Math.floor(i / width) + 0.5);
+                }
+                return { x: sum[1] / sum[0], y: sum[2] / sum[0], light: sum[0] / (width * height), width,
+                         focal: eye.projectionMatrix[0] * width / 2, eye: eye.eye };
+            });
+            resolve({ sums, n: gpu.n, sorted: gpu.sorted });
+        } catch (e) { reject(e); }
+    };
+    session.requestAnimationFrame(look);
+});
+`;
+
+const EYES_APART = 0.64, AWAY = 6;              // metres; the middle of a scene without units is 2 m from the first view
+
+/** A headset, of the emulator iwer (npm): ADCGS_IWER names its file build/iwer.min.js. */
+async function headset() {
+    const emulator = process.env.ADCGS_IWER;
+    if (!emulator) {
+        console.log('skipped: a headset: no emulator; ADCGS_IWER may name build/iwer.min.js of iwer (npm)');
+        return;
+    }
+    await go(urlOf('sound.html', '?autoplay=0'));
+    const without = await run(`await settled(); return [document.getElementById('vr').hidden, adcgs.gpu ? '' : adcgs.notes.join()];`);
+    if (without[1]) {
+        console.log(`skipped: a headset in ${kind}: ${without[1]}`);
+        return;
+    }
+    same(without[0], true, 'no button without a headset');
+    await run(`${readFileSync(emulator, 'utf8')}; window.IWER = globalThis.IWER || this.IWER;`);
+    await run(`const device = window.device = new IWER.XRDevice(IWER.metaQuest3);
+        device.installRuntime({ polyfillLayers: false, forceInstall: true }); device.stereoEnabled = true; device.ipd = ${EYES_APART};
+        device.position.set(0, 0, ${AWAY});
+        await adcgs.offerHeadset();`);
+    same(await run(`return document.getElementById('vr').checkVisibility();`), true, 'a button with a headset');
+    await browser.click('#vr');
+    const got = await run(`${EYES}
+        await until(() => adcgs.headset && adcgs.gpu.n && adcgs.gpu.sorted === adcgs.gpu.n, 'session with splats');
+        const { left, right } = device.controllers, place = adcgs.headset.place, frames = n => new Promise(done => {
+            const next = () => n-- ? adcgs.headset.session.requestAnimationFrame(next) : done();
+            next();
+        });
+        await frames(3);
+        const first = await eyes(), pressed = document.getElementById('vr').getAttribute('aria-pressed');
+        left.updateAxes('thumbstick', 0, -1);
+        await until(() => place.walked[2] < -2, 'walk forward');
+        left.updateAxes('thumbstick', 0, 0);
+        await frames(3);
+        const walked = [...place.walked], near = await eyes();
+        right.updateAxes('thumbstick', 1, 0);
+        await until(() => place.angle, 'turn');
+        await frames(5);
+        const turns = place.angle;
+        right.updateAxes('thumbstick', 0, 0);
+        right.updateButtonValue('trigger', 1); await frames(3); right.updateButtonValue('trigger', 0);
+        await until(() => adcgs.playing, 'playing by the trigger');
+        await until(() => adcgs.view.call.view_frame() > 2, 'frames while playing');
+        const sorts = adcgs.fast.sortMs !== undefined;
+        adcgs.pause();
+        const n = adcgs.pictures;
+        document.getElementById('vr').click();
+        await until(() => !adcgs.headset && adcgs.pictures > n, 'exact image after the session');
+        await settled();
+        return { first, near, walked, turns, pressed, sorts, after: document.getElementById('vr').getAttribute('aria-pressed'), ...report() };`);
+    same([got.pressed, got.after, got.sorts], ['true', 'false', true], 'aria-pressed in the session and after it; sorted splats');
+    samePicture(got.picture, STREAM, 'the exact image after the session');
+    check(Math.abs(got.walked[0]) + Math.abs(got.walked[1]) < 1e-6, `a walk forward, to ${got.walked}`);
+    check(Math.abs(got.turns + Math.PI / 6) < 1e-6, `one turn to the right: ${got.turns}`);
+    for (const [{ sums: [left, right] }, metres] of [[got.first, AWAY + 2], [got.near, AWAY + 2 + got.walked[2]]]) {
+        const expected = left.focal * EYES_APART / metres;
+        check(left.light > 0 && Math.abs(left.x - right.x - expected) < 0.08 * expected && Math.abs(left.y - right.y) < 0.1,
+              `parallax of ${left.x - right.x} pixels at ${metres} m, expected ${expected}; rows ${left.y}, ${right.y}`);
+    }
+}
+
+await runParts([sound, headset], 480, 360);

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
 # The page in the available browsers: exact frames, controls, files dropped, truncated and damaged, sound. By default in the first
-# browser; with ADCGS_FULL=1 in each, and also images of the GPU, a server, and the width of a phone. ADCGS_CHROMIUM and
-# ADCGS_FIREFOX may name the browsers, ADCGS_SHOTS a folder for screenshots. Runs in the build folder.
+# browser; with ADCGS_FULL=1 in each, and also images of the GPU, a server, the width of a phone, and a headset. ADCGS_CHROMIUM and
+# ADCGS_FIREFOX may name the browsers, ADCGS_IWER the emulator of a headset, ADCGS_SHOTS a folder for screenshots. Runs in the
+# build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-share adcgs-dec adcgs-enc adcgs-demo-scene
 page=$PWD/web/adcgs-page.html
@@ -34,6 +35,12 @@ head -c $((bytes * 3 / 4)) "$dir/s.adcgs" >"$dir/cut.adcgs"
 cp "${srcdir:-.}/conformance/vectors/good-unit-truncated-layer-0.adcgs" "$dir/stub.adcgs"
 cp "$dir/s.adcgs" "$dir/bad.adcgs"
 printf '\377\377\377\377' | dd of="$dir/bad.adcgs" bs=1 seek=$((bytes * 9 / 10)) conv=notrunc 2>/dev/null
+
+# The emulator of a headset, a package of npm.
+if [ -n "${ADCGS_FULL-}" ] && [ -z "${ADCGS_IWER-}" ] && command -v npm >/dev/null; then
+    npm install --prefix "$dir/npm" --ignore-scripts --no-audit --no-fund iwer@2 >"$dir/out" 2>&1 &&
+        export ADCGS_IWER=$dir/npm/node_modules/iwer/build/iwer.min.js
+fi
 
 # The browser's home is the test's folder, which is removed at the end.
 export HOME=$dir XDG_CONFIG_HOME=$dir/config XDG_CACHE_HOME=$dir/cache

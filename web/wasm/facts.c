@@ -122,6 +122,8 @@ const char *PAGE_EXPORT(page_facts)(void)
     put_string(&t, info.colour);
     put(&t, ",\"axes\":");
     put_string(&t, info.axes);
+    put(&t, ",\"units\":");
+    put_string(&t, info.units);
     put_bytes(&t, &info.bytes);
     put_metadata(&t, decoder, info.metadata);
     put(&t, "}");
