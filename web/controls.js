@@ -152,7 +152,8 @@ function showControls() {
     $('play').disabled = $('time').disabled = call.view_frames() < 2;
     $('loop').setAttribute('aria-pressed', call.view_loop() === 1);
     $('fly').setAttribute('aria-pressed', call.view_flying() === 1);
-    $('bar').hidden = !call.view_bar();
+    $('bar').hidden = $('stick').hidden = !call.view_bar();
+    $('stick').classList.toggle('flying', call.view_flying() === 1);
     if (call.view_help() && $('help').hidden)
         showPanel('facts', false);
     showPanel('help', call.view_help() === 1);

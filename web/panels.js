@@ -75,6 +75,11 @@ function hasTouch() {
     return matchMedia('(any-pointer: coarse)').matches || navigator.maxTouchPoints > 0;
 }
 
+/** As in page.css. */
+function hasStick() {
+    return matchMedia('(pointer: coarse)').matches;
+}
+
 function hasMouse() {
     return matchMedia('(any-pointer: fine)').matches || !hasTouch();
 }
@@ -170,7 +175,8 @@ function makeHelp() {
     const texts = { p: 'save an image', 'h F1': 'this help' };
     const parts = [element('h2', 'Help')];
     if (hasTouch())
-        parts.push(...helpRows('Touch', [['one finger', 'look around'], ['two fingers', 'move and zoom']]));
+        parts.push(...helpRows('Touch', [['one finger', 'look around'], ['two fingers', 'move and zoom'],
+                                         ...hasStick() ? [['stick', 'fly, and one finger turns; a tap on it ends that']] : []]));
     if (hasMouse())
         parts.push(...helpRows('Mouse', mouse),
                    ...helpRows('Keys', keys.map(([name, text]) => [keyCells(name), texts[name] || text])));

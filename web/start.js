@@ -81,6 +81,7 @@ async function start() {
     listen();
     listenToMute();
     listenToHeadset();
+    listenToStick();
     if (source)
         openScene(() => sceneAt(source), wishesOf({}, parameters, true));
     else if (inside)

@@ -6,7 +6,7 @@
 //   await browser.go(url); await browser.run('script, which may return a promise'); await browser.shot('file.png');
 //   await browser.click('#play'), as a user does; await browser.close();
 //
-// More options: flags of the command (Chromium), reduced (the user prefers less motion), phone (touch, Chromium). browser.messages
+// More options: flags of the command (Chromium), reduced (the user prefers less motion), phone (touch; in Firefox only the kind of pointer). browser.messages
 // has the messages of the console (Chromium).
 import { spawn } from 'node:child_process';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
@@ -108,10 +108,11 @@ async function openChromium(command, profile, { width, height, flags = [], reduc
     };
 }
 
-async function openFirefox(command, profile, { width, height, reduced }) {
+async function openFirefox(command, profile, { width, height, reduced, phone }) {
     const settings = { 'marionette.port': 0, 'browser.shell.checkDefaultBrowser': false, 'app.update.enabled': false,
                        'datareporting.policy.dataSubmissionEnabled': false, 'webgl.force-enabled': true,
-                       'ui.prefersReducedMotion': reduced ? 1 : 0 };
+                       'ui.prefersReducedMotion': reduced ? 1 : 0,
+                       ...phone ? { 'ui.primaryPointerCapabilities': 1, 'ui.allPointerCapabilities': 1 } : {} };
     writeFileSync(join(profile, 'user.js'),
                   Object.entries(settings).map(([name, value]) => `user_pref("${name}", ${value});\n`).join(''));
     const process = spawn(command, ['--headless', '--no-remote', '--marionette', '--profile', profile], { stdio: 'ignore' });

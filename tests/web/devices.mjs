@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// The page with devices beyond screen and mouse: node devices.mjs chromium|firefox COMMAND FOLDER [full]; in the build folder.
+// The page with sound, headset and fingers: node devices.mjs chromium|firefox COMMAND FOLDER [full]; in the build folder.
 // FOLDER has s.adcgs and sound.html, whose scene lasts from 0.1 to 1.01 s and whose sound begins at 0.1 s; the sound of deaf.html is
 // damaged. Exits with 1 if something is wrong.
 import { readFileSync } from 'node:fs';
-import { at, browser, check, go, kind, run, runParts, same, samePicture, urlOf } from './page_kit.mjs';
+import { at, browser, check, full, go, kind, restart, run, runParts, same, samePicture, shot, urlOf } from './page_kit.mjs';
 
 const STREAM = `${process.env.srcdir || '.'}/conformance/vectors/good-seq-gaps.adcgs`;
 const WITHIN = 0.04;                            // seconds: the sound's largest distance from the image
@@ -67,7 +67,7 @@ async function sound() {
     const paused = await run(`return [document.getElementById('mute').getAttribute('aria-pressed'), adcgs.muted, adcgs.sound.time];`);
     same(paused, ['true', false, null], 'pressed, not muted, silent in a pause');
     checkSound(await ask(`adcgs.play(); await until(() => adcgs.sound.time !== null, 'sound while playing');
-        return listen(1.5);`));
+        return listen(1);`));
     const got = await ask(`const bar = document.getElementById('time'), out = [];
         adcgs.pause(); await sleep(50); out.push(adcgs.sound.time);
         bar.value = 20; bar.dispatchEvent(new Event('input')); await sleep(50); out.push(adcgs.sound.time);
@@ -182,4 +182,49 @@ async function headset() {
     }
 }
 
-await runParts([sound, headset], 480, 360);
+/** The stick of a phone: its place in both orientations, flight, turns, and the way back. */
+async function stick() {
+    await go(urlOf('sound.html', '?autoplay=0'));
+    same(await run(`await settled(); return document.getElementById('stick').checkVisibility();`), false, 'a stick with a mouse');
+    for (const [width, height] of full ? [[844, 390], [390, 844]] : [[390, 844]]) {
+        await restart(width, height, { phone: true });
+        await go(urlOf('sound.html', '?autoplay=0'));
+        const got = await run(`await settled();
+            const box = id => document.getElementById(id).getBoundingClientRect(), stick = box('stick'), knob = box('stick').width / 2;
+            const over = id => { const b = box(id); return b.width > 0 && stick.left < b.right && b.left < stick.right &&
+                stick.top < b.bottom && b.top < stick.bottom; };
+            return { seen: document.getElementById('stick').checkVisibility(), over: ['time', 'buttons', 'hint', 'card'].filter(over),
+                     inside: stick.left >= 0 && stick.top >= 0 && stick.bottom <= innerHeight && stick.right < innerWidth / 2,
+                     small: [...document.querySelectorAll('#buttons button, #stick, #stick i')].filter(e => e.checkVisibility() &&
+                         (e.getBoundingClientRect().width < 44 || e.getBoundingClientRect().height < 44)).map(e => e.id),
+                     wide: document.documentElement.scrollWidth > innerWidth };`);
+        same(got, { seen: true, over: [], inside: true, small: [], wide: false }, `the stick at ${width}x${height}`);
+        await shot(`stick-${width}x${height}`);
+    }
+    const got = await run(`
+        const thumb = (type, x, y) => { const b = document.getElementById('stick').getBoundingClientRect();
+            document.getElementById('stick').dispatchEvent(new PointerEvent(type, { pointerId: 7, pointerType: 'touch', bubbles: true,
+                clientX: b.left + b.width * (1 + x) / 2, clientY: b.top + b.height * (1 + y) / 2 })); };
+        const pose = () => { const n = new DataView(adcgs.view.copy(adcgs.view.call.view_camera(1), 136).buffer);
+            return { at: [64, 96, 128].map(i => n.getFloat64(i, true)), ahead: [56, 88, 120].map(i => n.getFloat64(i, true)) }; };
+        const flying = () => adcgs.view.call.view_flying() === 1, seen = () => document.getElementById('stick').classList.contains('flying');
+        const first = pose();
+        thumb('pointerdown', 0, 0); thumb('pointermove', 0.05, -0.9);
+        await until(() => { const { at } = pose(); return Math.hypot(...at.map((x, i) => x - first.at[i])) > 0.05; }, 'flight');
+        const flown = pose(), during = [flying(), seen(), adcgs.view.text(adcgs.view.call.view_message()) !== document.getElementById('message').textContent];
+        const pictures = () => adcgs.fast.drawMs || adcgs.pictures, moved = pictures();
+        pointer('pointerdown', 300, 300, 8, 'touch'); pointer('pointermove', 340, 310, 8, 'touch'); pointer('pointerup', 340, 310, 8, 'touch');
+        const turned = pose();
+        thumb('pointerup', 0.05, -0.9); await sleep(100);
+        const n = adcgs.pictures; await until(() => adcgs.drawn.exact && adcgs.picture.generation === adcgs.generation, 'exact image');
+        const rest = pose(); await sleep(200); const still = pose(), after = flying();
+        thumb('pointerdown', 0, 0); thumb('pointerup', 0, 0); await sleep(100);
+        return { first, flown, turned, rest, still, during, after, orbits: !flying() && !seen() };`);
+    const way = got.flown.at.map((x, i) => x - got.first.at[i]), length = Math.hypot(...way);
+    check(way.reduce((sum, x, i) => sum + x * got.first.ahead[i], 0) > 0.999 * length, `a flight ahead: ${way}`);
+    check(Math.hypot(...got.turned.ahead.map((x, i) => x - got.flown.ahead[i])) > 0.01, 'a drag turns while the thumb flies');
+    same([got.still.at, got.during, got.after, got.orbits], [got.rest.at, [true, true, true], true, true],
+         'at rest without the thumb; flying, shown, no message about keys; flying until a tap');
+}
+
+await runParts([sound, headset, stick], 480, 360);

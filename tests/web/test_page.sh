@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The page in the available browsers: exact frames, controls, files dropped, truncated and damaged, sound. By default in the first
-# browser; with ADCGS_FULL=1 in each, and also images of the GPU, a server, the width of a phone, and a headset. ADCGS_CHROMIUM and
-# ADCGS_FIREFOX may name the browsers, ADCGS_IWER the emulator of a headset, ADCGS_SHOTS a folder for screenshots. Runs in the
-# build folder.
+# The page in the available browsers: exact frames, controls, files dropped, truncated and damaged, sound, a stick for thumbs. By
+# default in the first browser; with ADCGS_FULL=1 in each, and also images of the GPU, a server, sizes of phones, and a headset.
+# ADCGS_CHROMIUM and ADCGS_FIREFOX may name the browsers, ADCGS_IWER the emulator of a headset, ADCGS_SHOTS a folder for
+# screenshots. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-share adcgs-dec adcgs-enc adcgs-demo-scene
 page=$PWD/web/adcgs-page.html
