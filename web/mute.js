@@ -17,16 +17,22 @@ function followSound() {
                      Boolean(call.view_playing() && !call.view_waits() && call.view_factor() === 1 && !document.hidden));
 }
 
+function unmute(ours) {
+    ours.unmute().then(wake, () => {
+        if (sound !== ours)
+            return;
+        removeSound();
+        say('This browser cannot play the sound of this scene');
+    });
+}
+
 function setMuted(muted) {
     if (!sound)
         return;
     if (muted)
         sound.mute();
     else
-        sound.unmute().then(wake, () => {
-            removeSound();
-            say('This browser cannot play the sound of this scene');
-        });
+        unmute(sound);
     showMuted();
 }
 
@@ -52,7 +58,7 @@ function listenToMute() {
             setMuted(!sound.muted);
     });
     // A page that a script unmuted is heard from the next action of the user on.
-    window.addEventListener('pointerdown', () => sound && !sound.muted && sound.unmute());
+    window.addEventListener('pointerdown', () => sound && !sound.muted && unmute(sound));
     document.addEventListener('visibilitychange', () => {
         if (opened())
             followSound();

@@ -32,6 +32,7 @@ class FrameClock {
 class Sound {
     static ERROR_MOST = 0.02;   // seconds: of the clock's time when the sound starts
     static DRIFT_MOST = 0.03;   // seconds
+    static SOON = 0.04;         // seconds until it starts: devices take samples in advance
     static LATE = 3;            // looks with a larger drift before the sound starts again: clocks of browsers are coarse
 
     /** bytes: of a file that the browser decodes. offset: time of the scene at which the file begins, seconds. */
@@ -71,7 +72,7 @@ class Sound {
                 this.clock = new FrameClock();
             return;
         }
-        const drift = this.source ? Math.abs(this.time - clock.time(now)) : Infinity;
+        const drift = this.source ? Math.abs(this.heard - clock.time(now)) : Infinity;
         this.late = drift > Sound.DRIFT_MOST ? this.late + 1 : 0;
         if (this.source ? this.late >= Sound.LATE || drift > 5 * Sound.DRIFT_MOST : clock.error <= Sound.ERROR_MOST)
             this.start(clock.time(now));
@@ -82,15 +83,20 @@ class Sound {
         return this.context.outputLatency || this.context.baseLatency || 0;
     }
 
+    /** Time of the scene that is heard now, or would be, if the sound had started before. */
+    get heard() {
+        return this.from + this.context.currentTime - this.at - this.latency;
+    }
+
     /** Time of the scene that is heard now; null if it is silent. */
     get time() {
-        return this.source ? this.from + this.context.currentTime - this.at - this.latency : null;
+        return this.source && this.context.currentTime >= this.at ? this.heard : null;
     }
 
     start(time) {
         this.stop();
-        this.at = this.context.currentTime;
-        this.from = time + this.latency;
+        this.at = this.context.currentTime + Sound.SOON;
+        this.from = time + Sound.SOON + this.latency;
         this.source = new AudioBufferSourceNode(this.context, { buffer: this.buffer });
         this.source.connect(this.output);
         const into = this.from - this.offset;

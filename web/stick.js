@@ -11,7 +11,7 @@ class Stick {
         for (const [type, act] of [['pointerdown', this.down], ['pointermove', this.drag], ['pointerup', this.up],
                                    ['pointercancel', this.up], ['lostpointercapture', this.up]])
             element.addEventListener(type, event => {
-                event.stopPropagation(); // what is below the stick would take it for a drag of the image
+                event.stopPropagation(); // the stage would take it for a drag of the image
                 act.call(this, event);
             });
     }

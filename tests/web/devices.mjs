@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 // The page with sound, headset and fingers: node devices.mjs chromium|firefox COMMAND FOLDER [full]; in the build folder.
-// FOLDER has s.adcgs and sound.html, whose scene lasts from 0.1 to 1.01 s and whose sound begins at 0.1 s; the sound of deaf.html is
-// damaged. Exits with 1 if something is wrong.
+// FOLDER has s.adcgs, share.html (with it) and sound.html, whose scene lasts from 0.1 to 1.01 s, and its sound begins at 0.1 s. The
+// sound of deaf.html is damaged. Exits with 1 if something is wrong.
 import { readFileSync } from 'node:fs';
 import { at, browser, check, full, go, kind, restart, run, runParts, same, samePicture, shot, urlOf } from './page_kit.mjs';
 
@@ -12,6 +12,11 @@ const BEGIN = 0.1, LOWEST = 500, RISE = 4000;   // the sound of test_page.sh: Hz
 
 /** Samples of the sound and of the image, at each of the browser's images for some seconds. */
 const LISTEN = `
+/** The time of the frame to show now, and of the sound. */
+const both = () => {
+    adcgs.view.call.view_tick(performance.now() / 1000);
+    return [adcgs.time, adcgs.sound.time];
+};
 const listen = async seconds => {
     const tap = adcgs.sound.context.createAnalyser(), rows = [];
     tap.fftSize = 1024;
@@ -21,8 +26,8 @@ const listen = async seconds => {
     for (const end = performance.now() + 1000 * seconds; performance.now() < end;) {
         await new Promise(requestAnimationFrame);
         tap.getFloatFrequencyData(levels);
-        const loudest = levels.indexOf(Math.max(...levels));
-        rows.push({ image: adcgs.time, sound: adcgs.sound.time, hz: loudest * hz,
+        const [image, sound] = both(), loudest = levels.indexOf(Math.max(...levels));
+        rows.push({ image, sound, hz: loudest * hz,
                     ahead: adcgs.sound.latency - tap.fftSize / 2 / adcgs.sound.context.sampleRate });
     }
     adcgs.sound.output.disconnect(tap);
@@ -71,9 +76,9 @@ async function sound() {
     const got = await ask(`const bar = document.getElementById('time'), out = [];
         adcgs.pause(); await sleep(50); out.push(adcgs.sound.time);
         bar.value = 20; bar.dispatchEvent(new Event('input')); await sleep(50); out.push(adcgs.sound.time);
-        adcgs.play(); await until(() => adcgs.sound.time !== null, 'sound after a seek'); const late = [adcgs.time, adcgs.sound.time];
-        bar.value = 2; bar.dispatchEvent(new Event('input')); await until(() => adcgs.sound.time < 0.5, 'sound after another seek');
-        const early = [adcgs.time, adcgs.sound.time];
+        adcgs.play(); await until(() => adcgs.sound.time !== null, 'sound after a seek'); const late = both();
+        bar.value = 2; bar.dispatchEvent(new Event('input')); await until(() => adcgs.sound.time !== null && adcgs.sound.time < 0.5, 'sound after another seek');
+        const early = both();
         key('.'); await sleep(50); out.push(adcgs.sound.time);
         key(','); await until(() => adcgs.sound.time !== null, 'sound at its own speed');
         key('m'); await sleep(50); out.push(adcgs.sound.time, adcgs.muted, document.getElementById('mute').getAttribute('aria-pressed'));
@@ -93,7 +98,7 @@ async function sound() {
     same(deaf, ['This browser cannot play the sound of this scene', true, 'complete'], 'a sound that no browser decodes');
 }
 
-/** Reads the image of each eye within a frame of the session: the mean place of its light, and its rows for a picture. */
+/** Reads the image of each eye within a frame of the session: the mean place of its light. */
 const EYES = `
 const eyes = () => new Promise((resolve, reject) => {
     const { session, layer, gpu } = adcgs.headset, gl = gpu.gl;
@@ -119,6 +124,42 @@ const eyes = () => new Promise((resolve, reject) => {
     session.requestAnimationFrame(look);
 });
 `;
+
+/** The place of an eye: with the pose and the lens of the page's camera, the shader's numbers are those of the decoder. */
+async function eye() {
+    await go(urlOf('share.html', '?autoplay=0'));
+    const got = await run(`await settled();
+        if (typeof Place === 'undefined')
+            return null;
+        const seen = [];
+        for (const [axes, units, angle] of [['right-handed, z up', 'metre', 0], ['right-handed, y down', 'unknown', 1], ['unknown', 'unknown', -2]]) {
+            adcgs.setCamera({ position: [1 + angle, -2.5, 1.4], target: [0.2, 0.1, 0.3], up: [0.1, 0, 1] });
+            const camera = cameraOf(1), numbers = new DataView(camera.buffer), axis = axesOf(camera);
+            const place = new Place({ ...adcgs.facts, axes, units }, axis), width = numbers.getInt32(0, true), height = numbers.getInt32(4, true);
+            const want = [...view.floats(view.call.view_uniforms(1), 21)], [fx, fy, cx, cy] = want.slice(12, 16);
+            const inside = v => [place.right, place.up, place.back].map(a => dot(a, v));
+            const pose = new Float32Array(16), projection = new Float32Array(16);
+            [axis.right, axis.down.map(x => -x), axis.forward.map(x => -x)].forEach((v, i) => pose.set(inside(v), 4 * i));
+            pose[15] = 1;
+            projection.set([2 * fx / width, 0, 0, 0, 0, 2 * fy / height, 0, 0, 1 - 2 * cx / width, 2 * cy / height - 1, -1, -1]);
+            const off = () => [...place.uniforms(pose, projection, width, height)].map((x, i) => i === 16 ? 0 : Math.abs(x - want[i]) / (1 + Math.abs(want[i])));
+            seen.push(Math.max(...off()));
+            place.turn(pose, 0.7);
+            place.turn(pose, -0.7);
+            place.walk(pose, 1, 2);
+            const far = Math.max(...off());
+            place.walk(pose, -1, -2);
+            seen.push(Math.max(...off()), far > 0.01, place.metre > 0 && (units !== 'metre' || place.metre === 1));
+        }
+        return seen;`);
+    if (!got) {
+        console.log(`skipped: the eyes of a headset in ${kind}: tests cannot see the page's classes there`);
+        return;
+    }
+    for (let i = 0; i < got.length; i += 4)
+        check(got[i] < 1e-5 && got[i + 1] < 1e-5 && got[i + 2] && got[i + 3], `the eye's numbers, set ${i / 4}: ${got.slice(i, i + 4)}`);
+    same(got.length, 12, 'sets of numbers');
+}
 
 const EYES_APART = 0.64, AWAY = 6;              // metres; the middle of a scene without units is 2 m from the first view
 
@@ -227,4 +268,4 @@ async function stick() {
          'at rest without the thumb; flying, shown, no message about keys; flying until a tap');
 }
 
-await runParts([sound, headset, stick], 480, 360);
+await runParts([sound, eye, headset, stick], 480, 360);

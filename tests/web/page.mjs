@@ -106,7 +106,7 @@ async function dropped() {
                    ['s.adcgs', 'complete', /^$/]];
     for (const [name, state, message, ...options] of drops) {
         const bytes = name === 'none.adcgs' ? Buffer.alloc(3000) : readFileSync(at(name));
-        const got = await run(`drop('${bytes.toString('base64')}', '${name}'); await sleep(50); await settled(); await sleep(300);
+        const got = await run(`drop('${bytes.toString('base64')}', '${name}'); await sleep(50); await settled();
             await until(() => adcgs.state === 'failed' || adcgs.picture, 'image'); return report();`);
         same(got.state, state, `${name} dropped`);
         check(message.test(got.message), `${name} dropped: "${got.message}"`);
