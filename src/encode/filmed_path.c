@@ -99,7 +99,7 @@ adcgs_status adcgs_filmed_path_make(adcgs_filmed_path *path, const adcgs_scene_v
         insert(path, &views[worst]);
     }
     if (mean > ERROR_MOST)
-        path->n = 0;
+        adcgs_filmed_path_clear(path);
     return ADCGS_OK;
 }
 

@@ -11,7 +11,7 @@
 
 typedef struct adcgs_filmed_path {
     int n;                  /**< keys; 0: the poses do not lie on a smooth path */
-    adcgs_camera_key *keys; /**< [n] in ascending time, which `at` repeats; poses are exact in binary32; may be NULL */
+    adcgs_camera_key *keys; /**< [n] in ascending time, which `at` repeats; poses are exact in binary32; NULL if n is 0 */
 } adcgs_filmed_path;
 
 /** views: [n] of one camera, in ascending time without equal times. scale: world units per scene unit. */
