@@ -2,9 +2,9 @@
 /** \file Initial points of anchors. */
 #include "train/start_points.h"
 
-#include "data/sort_values.h"
 #include "grad/random.h"
 #include "stereo/body_pose.h"
+#include "stereo/motion_check.h"
 #include "train/scene_frame.h"
 #include "train/visibility.h"
 
@@ -15,7 +15,6 @@
 #define MOVING_SHARE 0.25         /* of all points: moving ones; with many more, anchors are too small to find motion */
 #define SPACING_LEAST (1 / 15.0f) /* minimum frame spacing, as share of the clip; bounds the number of lifetimes in a long clip */
 #define MONOCULAR_LIFETIMES 2.7f  /* factor of lifetimes for one moving camera: more views then see an anchor */
-#define FILM_FAR 0.4              /* camera distances per clip: slower motion is found without lifetimes */
 #define POINTS_LOOKED_AT 1000     /* points tested for visibility in any camera */
 #define MOVING_MOST 2000          /* maximum number per frame for lifetimes */
 
@@ -267,24 +266,6 @@ float adcgs_half_lifetime(const adcgs_train_config *config, const adcgs_stereo *
            fmaxf(adcgs_stereo_spacing(found), SPACING_LEAST);
 }
 
-/** True if the median moving point moves far, in a scene of one moving camera. */
-static adcgs_status goes_far(const adcgs_stereo *found, int *far, adcgs_error *error)
-{
-    double *speed = adcgs_alloc(NULL, (size_t)found->n_moving + 1, sizeof *speed, error);
-    uint32_t n = 0;
-    if (!speed)
-        return adcgs_alloc_status(error);
-    for (uint32_t i = 0; i < found->n_moving; i++) {
-        const float *v = found->moving[i].velocity;
-        if (!found->moving[i].in_place)
-            speed[n++] = sqrt((double)(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-    }
-    adcgs_sort(speed, n);
-    *far = n && speed[n / 2] >= FILM_FAR;
-    adcgs_free(NULL, speed);
-    return ADCGS_OK;
-}
-
 /** Sets initial lifetimes: symmetric, except at known ends. Known ends do not apply to points of bodies. */
 static void set_lives(adcgs_stereo *found, const adcgs_train_config *config)
 {
@@ -302,7 +283,7 @@ static void set_lives(adcgs_stereo *found, const adcgs_train_config *config)
 adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene *scene, adcgs_train_config *config,
                                adcgs_pool *pool, adcgs_error *error)
 {
-    int matched = 0, whole = 0, far = 1;
+    int matched = 0, whole = 0, moves;
     const int given = has_points(scene);
     adcgs_stereo_options options = {.still = 0};
     if (config->matching_frames && (!given || config->params.spans)) {
@@ -321,10 +302,9 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene
         ADCGS_TRY(adcgs_stereo_find(found, scene, &options, pool, error));
     }
     set_lives(found, config);
-    if (found->monocular && !found->n_bodies)
-        ADCGS_TRY(goes_far(found, &far, error));
+    ADCGS_TRY(adcgs_stereo_check_motion(&moves, found, error));
     /* All segments of a stream have the same parameters, so a part's parameters cannot depend on its own content. */
-    if (config->matching_frames && !(scene->whole ? whole : far && found->n_moving))
+    if (config->matching_frames && !(scene->whole ? whole : moves))
         config->params.spans = 0;
     if (!scene->whole || !config->params.spans || !whole)
         config->params.bodies = (uint8_t)found->n_bodies;
