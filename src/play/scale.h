@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The resolution of moving images, 1/1, 1/2, ... of the window's, and, below 1/2, the number of the stream's tiers. They are
+ * The resolution of moving images, 1/1, 1/2, ... of the window's, and, below 1/4, the number of the stream's tiers. They are
  * chosen so that rendering fits into a frame's time. The resolution falls after two images that took too long. It rises only
  * after many images that were so fast that finer ones will fit, too, so that it does not flicker between the two.
  */
