@@ -9,6 +9,9 @@
 
 #include <math.h>
 
+#define RETURN_SECONDS 0.3 /* in which a view outside goes most of its way back, while it plays */
+#define PART_STEPS 12      /* halvings: 1/4096 of an offset is invisible */
+
 /** out = a b, poses of 3x4 numbers; out must be neither a nor b. */
 static void multiply(const double a[12], const double b[12], double out[12])
 {
@@ -62,15 +65,51 @@ void adcgs_filmed_view_start(adcgs_filmed_view *view, adcgs_orbit_control *contr
     view->beside = 0;
 }
 
-void adcgs_filmed_view_tick(adcgs_filmed_view *view, adcgs_orbit_control *control, double time)
+/** The pose of a part of the offset: of its turn about the centre of the orbit, and of the rest of the way. */
+static void place_beside(const adcgs_filmed_view *view, double part, double pose[12])
+{
+    double none[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, from[4], to[4], turn[3], whole[3], turned[3];
+    adcgs_rotation_from_pose(none, from);
+    adcgs_rotation_from_pose(view->offset, to);
+    adcgs_rotation_between(from, to, turn);
+    adcgs_rotation_exp(turn, part, to);
+    adcgs_rotation_to_pose(to, none);
+    transform(view->offset, view->target, whole);
+    transform(none, view->target, turned);
+    for (int i = 0; i < 3; i++)
+        none[4 * i + 3] = view->target[i] - turned[i] + part * (whole[i] - view->target[i]);
+    multiply(view->base, none, pose);
+}
+
+/** The largest part of the offset that is inside of the filmed region. */
+static double part_inside(const adcgs_filmed_view *view)
+{
+    double pose[12], low = 0, high = 1;
+    place_beside(view, 1, pose);
+    if (view->unlimited || adcgs_view_limit_at(&view->limit, pose) <= 1)
+        return 1;
+    for (int i = 0; i < PART_STEPS; i++) {
+        const double middle = 0.5 * (low + high);
+        place_beside(view, middle, pose);
+        if (adcgs_view_limit_at(&view->limit, pose) <= 1)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+void adcgs_filmed_view_tick(adcgs_filmed_view *view, adcgs_orbit_control *control, double time, double seconds)
 {
     adcgs_camera camera;
     if (!view->following)
         return;
     adcgs_follow_at(&view->follow, time, &camera);
     memcpy(view->base, camera.cam_to_world, sizeof view->base);
+    if (view->beside && seconds > 0)
+        view->part += (part_inside(view) - view->part) * (1 - exp(-seconds / RETURN_SECONDS));
     if (view->beside)
-        multiply(view->base, view->offset, camera.cam_to_world);
+        place_beside(view, view->part, camera.cam_to_world);
     control->camera = camera;
     transform(view->base, view->target, control->target);
 }
@@ -83,6 +122,7 @@ void adcgs_filmed_view_moved(adcgs_filmed_view *view, const adcgs_orbit_control 
     multiply(inverse, control->camera.cam_to_world, view->offset);
     transform(inverse, control->target, view->target);
     view->beside = 1;
+    view->part = 1;
 }
 
 static double limit_at(const adcgs_filmed_view *view, const adcgs_orbit_control *control)

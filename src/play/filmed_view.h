@@ -17,7 +17,8 @@ typedef struct adcgs_filmed_view {
     int beside;        /**< nonzero: the user moved the view away from that camera */
     int unlimited;     /**< nonzero: the user may leave the filmed region */
     double base[12];   /**< pose of the path's camera */
-    double offset[12]; /**< pose of the view in the axes of that camera */
+    double offset[12]; /**< pose of the view in the axes of that camera, as the user placed it */
+    double part;       /**< of that offset which is in use, 0 to 1: less while the whole would lead outside */
     double target[3];  /**< centre of the orbit in these axes */
 } adcgs_filmed_view;
 
@@ -30,8 +31,11 @@ void adcgs_filmed_view_clear(adcgs_filmed_view *view);
 int adcgs_filmed_view_has_path(const adcgs_filmed_view *view);
 /** Looks through the path's camera, and follows it from now on. Requires a path. */
 void adcgs_filmed_view_start(adcgs_filmed_view *view, adcgs_orbit_control *control, double time);
-/** Moves the view with the path's camera. Call it when the time has changed. */
-void adcgs_filmed_view_tick(adcgs_filmed_view *view, adcgs_orbit_control *control, double time);
+/**
+ * Moves the view with the path's camera. Call it when the time has changed. seconds: since the last call, if the user lets the
+ * scene play, else 0. Then a view beside the path returns to the filmed region, and to its place when that is inside again.
+ */
+void adcgs_filmed_view_tick(adcgs_filmed_view *view, adcgs_orbit_control *control, double time, double seconds);
 /** The user moved the view, or set another centre: it keeps its place relative to the path's camera from now on. */
 void adcgs_filmed_view_moved(adcgs_filmed_view *view, const adcgs_orbit_control *control);
 /** How far the view is outside of the filmed region: 0 inside, 1 where it may go no further. */

@@ -263,6 +263,8 @@ void adcgs_play_event(adcgs_play_state *state, const adcgs_event *event)
 void adcgs_play_tick(adcgs_play_state *state, double now)
 {
     const double way = (now - state->now) * state->speed * (state->shift ? SHIFT_SPEED : 1.0);
+    const int alone = state->clock.playing && state->drag == ADCGS_DRAG_NONE && !state->held;
+    const double seconds = alone ? now - state->now : 0.0;
     double by[3] = {0.0, 0.0, 0.0};
     state->now = now;
     if (!state->ticks) {
@@ -278,7 +280,7 @@ void adcgs_play_tick(adcgs_play_state *state, double now)
             by[2] += way * flights[i].forward;
         }
     if (state->filmed)
-        adcgs_filmed_view_tick(state->filmed, &state->control, adcgs_play_clock_time(&state->clock));
+        adcgs_filmed_view_tick(state->filmed, &state->control, adcgs_play_clock_time(&state->clock), seconds);
     if (state->held)
         adcgs_play_move(state, adcgs_hand_fly, by[0], by[1], by[2]);
 }

@@ -250,6 +250,53 @@ static void test_view_resists(void **state)
     adcgs_filmed_view_clear(&f.filmed);
 }
 
+static double angle_of(const film *f)
+{
+    return atan2(f->play.control.camera.cam_to_world[7], f->play.control.camera.cam_to_world[3]);
+}
+
+/** Plays at a place of the film for some seconds. The view moves without a jump, and keeps its distance to the centre. */
+static void play_at(film *f, double part, double seconds)
+{
+    const double *const pose = f->play.control.camera.cam_to_world;
+    go_to(f, part);
+    f->play.clock.playing = 1;
+    for (int i = 0; i < 100 * seconds; i++) {
+        const double before = angle_of(f);
+        adcgs_play_clock_seek(&f->play.clock, part);
+        adcgs_play_tick(&f->play, f->play.now + 0.01);
+        assert_true(fabs(angle_of(f) - before) < 0.05);
+        assert_true(fabs(sqrt(pose[3] * pose[3] + pose[7] * pose[7] + pose[11] * pose[11]) - sqrt(37.0)) < 1e-6);
+    }
+    f->play.clock.playing = 0;
+}
+
+/** While it plays, a view beside the path comes into the filmed region, and returns to its place where that is inside again. */
+static void test_view_returns(void **state)
+{
+    const adcgs_event down = {.kind = ADCGS_EVENT_BUTTON, .button = 1, .down = 1, .x = 300, .y = 200};
+    film f;
+    open_film(&f);
+    drag(&f, -96, 0); /* 0.6 radians: 0.2 beyond the path's end */
+    const double placed = angle_of(&f);
+    assert_true(placed > 0.5 && adcgs_play_outside(&f.play) == 0);
+    go_to(&f, 1);
+    const double later = angle_of(&f), outside = adcgs_play_outside(&f.play);
+    assert_true(later > placed + 0.2 && outside > 0.2); /* paused, it keeps its offset */
+    adcgs_play_event(&f.play, &down);
+    play_at(&f, 1, 1);
+    assert_true(fabs(angle_of(&f) - later) < 1e-9); /* held, too */
+    adcgs_play_event(&f.play, &(adcgs_event){.kind = ADCGS_EVENT_BUTTON, .button = 1});
+    play_at(&f, 1, 4);
+    assert_true(adcgs_play_outside(&f.play) < 1e-3 && angle_of(&f) < later - 0.1 && angle_of(&f) > placed);
+    play_at(&f, 0, 4);
+    assert_true(fabs(angle_of(&f) - placed) < 1e-3);
+    f.filmed.unlimited = 1;
+    play_at(&f, 1, 4);
+    assert_true(fabs(angle_of(&f) - later) < 1e-3);
+    adcgs_filmed_view_clear(&f.filmed);
+}
+
 /** An orbit of 20 degrees about the pivot stays in the region; steps forward cost less than steps back. */
 static void test_region(void **state)
 {
@@ -296,8 +343,13 @@ static void test_pivot_request(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_path_has_few_keys), cmocka_unit_test(test_path_of_noise), cmocka_unit_test(test_stored_cameras),
-        cmocka_unit_test(test_view_follows),      cmocka_unit_test(test_view_resists),  cmocka_unit_test(test_region),
+        cmocka_unit_test(test_path_has_few_keys),
+        cmocka_unit_test(test_path_of_noise),
+        cmocka_unit_test(test_stored_cameras),
+        cmocka_unit_test(test_view_follows),
+        cmocka_unit_test(test_view_resists),
+        cmocka_unit_test(test_view_returns),
+        cmocka_unit_test(test_region),
         cmocka_unit_test(test_pivot_request),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
