@@ -61,6 +61,7 @@ void adcgs_scene_free(adcgs_scene **scene)
     adcgs_splat_scene_free(&(*scene)->splats);
     adcgs_clips_free(&(*scene)->clips);
     free((*scene)->directory);
+    free((*scene)->sound);
     free(*scene);
     *scene = NULL;
 }

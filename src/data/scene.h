@@ -72,6 +72,8 @@ typedef struct adcgs_scene {
     uint8_t axes, units, colour_space; /**< codes of adcgs_stream */
     double origin[3], scale;           /**< the frame of reference, if given; scale 0: it follows from the training views */
     adcgs_splat_scene *splats;         /**< NULL: views are images; else path of a view is the path of the splats */
+    char *sound;                       /**< file of the scene's sound, for players; NULL: none */
+    double sound_begin;                /**< when it begins, seconds after the first training view */
     int measured;                      /**< factor that reduces images for measuring a stream on them; 0 or 1: full size */
     char remarks[ADCGS_REMARKS_MAX][ADCGS_REMARK_BYTES]; /**< lines to print before training */
     int n_remarks;

@@ -45,6 +45,7 @@ static void set_times(adcgs_scene *scene)
         end = fmax(end, train[i].time);
     }
     scene->duration = end - begin;
+    scene->sound_begin -= begin;
     const double slack = ADCGS_TIME_TOLERANCE * fmax(scene->duration, 1.0);
     for (int split = 0; split < ADCGS_SPLITS; split++)
         fit_times(scene, split, begin, slack);
@@ -104,15 +105,20 @@ static adcgs_status read_points(const adcgs_scene_reader *r, const adcgs_json_pl
     return ADCGS_OK;
 }
 
-/** Checks the fields of the sound, which players use and training does not. */
-static adcgs_status check_sound(const adcgs_json_place *at)
+/** Reads the sound, which players use and training does not. A page publishes it: no scene may name a file elsewhere. */
+static adcgs_status read_sound(adcgs_scene_reader *r, const adcgs_json_place *at)
 {
     const char *sound;
-    double offset = 0.0;
     int found;
     ADCGS_TRY(adcgs_scene_camera_string(at, "sound", &sound));
-    ADCGS_TRY(adcgs_json_number(at, "sound_offset", -1e6, 1e6, &offset, &found));
-    return sound || !found ? ADCGS_OK : adcgs_json_bad(at, ADCGS_ERR_DATA, "sound_offset", "expected a sound as well");
+    ADCGS_TRY(adcgs_json_number(at, "sound_offset", -1e6, 1e6, &r->scene->sound_begin, &found));
+    if (!sound)
+        return found ? adcgs_json_bad(at, ADCGS_ERR_DATA, "sound_offset", "expected a sound as well") : ADCGS_OK;
+    if (!*sound || strchr(sound, '/'))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "sound", "%.100s, expected the name of a file in the scene's folder", sound);
+    free(r->scene->sound);
+    r->scene->sound = adcgs_scene_resolve(r, sound);
+    return r->scene->sound ? ADCGS_OK : adcgs_json_bad(at, ADCGS_ERR_MEMORY, "sound", "out of memory");
 }
 
 static adcgs_status read_root(adcgs_scene_reader *r, int with_points)
@@ -126,7 +132,7 @@ static adcgs_status read_root(adcgs_scene_reader *r, int with_points)
     ADCGS_TRY(adcgs_scene_camera_fields(&at, "", r->root, root_fields));
     ADCGS_TRY(adcgs_scene_camera_string(&at, "name", &name));
     ADCGS_TRY(read_world(r, &at));
-    ADCGS_TRY(check_sound(&at));
+    ADCGS_TRY(read_sound(r, &at));
     ADCGS_TRY(adcgs_scene_cameras_read(r, &at));
     if (r->listing)
         return ADCGS_OK;
@@ -160,6 +166,7 @@ adcgs_status adcgs_source_cameras_read(adcgs_source_camera **out, uint32_t *n, c
     adcgs_scene unused = {.n_times = 0};
     adcgs_scene_reader r = {.scene = &unused, .error = error, .path = path, .listing = 1};
     const adcgs_status status = read_file(&r, 0);
+    free(unused.sound);
     *out = r.sources;
     *n = r.n_sources;
     return status;

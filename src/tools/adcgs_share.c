@@ -107,7 +107,7 @@ static adcgs_status write_page(const settings *s, const char *path, const parts 
     adcgs_share_write(out.file, (const char *)p->page, p->page_bytes, &p->scene);
     const long bytes = ftell(out.file);
     ADCGS_TRY(adcgs_atomic_commit(&out, error));
-    if (path && s->sound)
+    if (path && p->scene.sound.data)
         adcgs_cli_note(s->cli, "%s: %ld bytes, with a scene of %zu bytes, a poster of %zu and a sound of %zu", s->output, bytes,
                        p->stream_bytes, p->scene.poster.bytes, p->scene.sound.bytes);
     else if (path)
@@ -129,8 +129,13 @@ static adcgs_status make_page(const settings *s, const char *path, parts *p, adc
         p->scene.bytes = p->stream_bytes;
         ADCGS_TRY(prepare_scene(s, path, p, error));
     }
-    if (s->sound)
+    if (s->sound) {
         ADCGS_TRY(adcgs_share_load_sound(&p->scene.sound, s->sound, error));
+        if (!p->scene.sound.data)
+            adcgs_cli_note(s->cli, "%s: this scene has no sound", s->sound);
+    }
+    if (s->has_sound_offset)
+        p->scene.sound.offset = s->sound_offset;
     ADCGS_TRY(load_page(p, s->page, error));
     return write_page(s, path, p, error);
 }
@@ -145,8 +150,7 @@ static adcgs_status share(const settings *s, const char *path, adcgs_error *erro
                          .camera = -1,
                          .has_time = s->has_time,
                          .time = s->time,
-                         .is_once = s->loop,
-                         .sound = {.offset = s->sound_offset}}};
+                         .is_once = s->loop}};
     if (!s->output)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "no output: give -o PAGE.html");
     if (path && adcgs_atomic_same(path, s->output))
@@ -207,8 +211,8 @@ static void add_page_options(adcgs_option_table *out, settings *s)
         {.name = "sound",
          .kind = ADCGS_OPTION_FILE,
          .target = &s->sound,
-         .value = "FILE",
-         .help = "sound that plays with the scene, as Opus (default: none)"},
+         .value = "FILE|SCENE",
+         .help = "sound that plays with the scene, as Opus, or the training\nscene that has it (default: none)"},
         {.name = "sound-offset",
          .kind = ADCGS_OPTION_SECONDS,
          .target = &s->sound_offset,
@@ -216,7 +220,7 @@ static void add_page_options(adcgs_option_table *out, settings *s)
          .max = 1e6,
          .given = &s->has_sound_offset,
          .value = "TIME",
-         .help = "time of the stream at which the sound begins (default: 0)"},
+         .help = "time of the stream at which the sound begins (default: 0, or as\nthe scene says)"},
         {.name = "loop",
          .kind = ADCGS_OPTION_CHOICE,
          .target = &s->loop,

@@ -4,7 +4,12 @@
 
 #include "tools/share_sound.h"
 
+#include "data/paths.h"
+#include "io/extension.h"
 #include "io/file.h"
+#include "layouts/open.h"
+
+#include <strings.h>
 
 #define SOUND_FILE_MAX ((uint64_t)64 << 20) /* bytes: many times the stream, and in base 64 a third more */
 
@@ -27,10 +32,22 @@ static const char *type_of(const uint8_t *data, size_t bytes)
     return bytes >= 2 && data[0] == 0xff && (data[1] & 0xe6) == 0xe2 ? "audio/mpeg" : NULL;
 }
 
-adcgs_status adcgs_share_load_sound(adcgs_share_sound *sound, const char *path, adcgs_error *error)
+static adcgs_status load_file(adcgs_share_sound *sound, const char *path, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_file_load(&sound->data, &sound->bytes, path, SOUND_FILE_MAX, error));
     sound->type = type_of(sound->data, sound->bytes);
     return sound->type ? ADCGS_OK
                        : adcgs_fail(error, ADCGS_ERR_DATA, "%.160s: no sound, expected Ogg, WebM, MP4, MP3, FLAC or WAV", path);
+}
+
+adcgs_status adcgs_share_load_sound(adcgs_share_sound *sound, const char *path, adcgs_error *error)
+{
+    adcgs_scene *scene;
+    if (!adcgs_is_folder(path) && strcasecmp(adcgs_extension(path), "json"))
+        return load_file(sound, path, error);
+    ADCGS_TRY(adcgs_scene_open(&scene, path, &(adcgs_scene_options){.is_outline = 1}, error));
+    sound->offset = scene->sound_begin;
+    const adcgs_status status = scene->sound ? load_file(sound, scene->sound, error) : ADCGS_OK;
+    adcgs_scene_free(&scene);
+    return status;
 }

@@ -5,7 +5,10 @@
 
 #include "tools/share_page.h"
 
-/** Loads a sound file, whose bytes become the page's sound. */
+/**
+ * Loads the sound of a file or of a scene, whose bytes become the page's sound. A scene is a folder or a scene file; it also
+ * determines when its sound begins. A scene without a sound gives none.
+ */
 adcgs_status adcgs_share_load_sound(adcgs_share_sound *sound, const char *path, adcgs_error *error);
 
 #endif

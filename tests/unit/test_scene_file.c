@@ -157,10 +157,14 @@ static void test_points(void **state)
     assert_true(scene->points.position[0][2] == 3.0);
 }
 
-/** The sound is for players: its fields are checked, and the file need not exist. */
+/** Players use the sound: its file need not exist. Its time counts from the first training view. */
 static void test_sound(void **state)
 {
-    open_good(FILE_OF(",\"sound\":\"s.opus\",\"sound_offset\":0.2", CAMERA("," IDENTITY)));
+    open_good(FILE_OF("", CAMERA("," IDENTITY)));
+    assert_null(scene->sound);
+    open_good(FILE_OF(",\"sound\":\"s.opus\",\"sound_offset\":0.2", CAMERA(",\"time_offset\":0.5," IDENTITY)));
+    assert_string_equal(scene->sound, in("s.opus"));
+    assert_true(fabs(scene->sound_begin + 0.3) < 1e-12);
 }
 
 static void expect_bad(const char *text, const char *what)
@@ -186,6 +190,8 @@ static void test_bad(void **state)
     expect_bad(FILE_OF(",\"defaults\":[]", CAMERA("," IDENTITY)), "defaults: expected an object");
     expect_bad(FILE_OF(",\"unit\":\"inch\"", CAMERA("," IDENTITY)), "unit: inch");
     expect_bad(FILE_OF(",\"sound\":7", CAMERA("," IDENTITY)), "sound: expected a text");
+    expect_bad(FILE_OF(",\"sound\":\"/etc/s.opus\"", CAMERA("," IDENTITY)), "sound: /etc/s.opus, expected the name");
+    expect_bad(FILE_OF(",\"sound\":\"../s.opus\"", CAMERA("," IDENTITY)), "sound: ../s.opus");
     expect_bad(FILE_OF(",\"sound_offset\":1", CAMERA("," IDENTITY)), "sound_offset: expected a sound");
     expect_bad(FILE_OF(",\"sound\":\"s\",\"sound_offset\":1e7", CAMERA("," IDENTITY)), "sound_offset: 1e+07");
     expect_bad(FILE_OF(",\"up\":\"x\"", CAMERA("," IDENTITY)), "up: x");

@@ -91,6 +91,24 @@ for type in '\032\105\337\243 webm' '....ftypM4A mp4' 'RIFF....WAVE wav' 'fLaC f
     grep -q "id=\"sound\" data-type=\"audio/${type##* }\"" "$dir/p.html" || bad "the type of $type"
 done
 
+# The sound of a training scene, and its time.
+mkdir "$dir/scene"
+cp "$dir/a.opus" "$dir/scene/tone.opus"
+camera='"name":"a","width":8,"height":6,"fx":8,"fy":8,"images":"a_%d.ppm","time_offset":1'
+scene_json() { printf '{"adcgs_scene":1,"frame_rate":10,%s"cameras":[{%s,"camera_to_world":[[1,0,0,0],[0,1,0,0],[0,0,1,4]]}]}' "$1" \
+    "$camera" >"$dir/scene/scene.json"; }
+{ printf 'P6 8 6 255\n'; head -c 144 /dev/zero; } >"$dir/scene/a_0.ppm"
+scene_json '"sound":"tone.opus","sound_offset":0.75,'
+expect 0 "and a sound of 13" share "$stream" -o "$dir/p.html" --sound "$dir/scene"
+grep -q 'id="sound" data-type="audio/ogg" data-offset="-0.25">' "$dir/p.html" || bad "the time of a scene's sound"
+expect 0 "and a sound of 13" share "$stream" -o "$dir/p.html" --sound "$dir/scene/scene.json" --sound-offset 2
+grep -q 'data-offset="2">' "$dir/p.html" || bad "another time than the scene's"
+scene_json ''
+expect 0 "this scene has no sound" share "$stream" -o "$dir/p.html" --sound "$dir/scene"
+! grep -q 'id="sound" data' "$dir/p.html" || bad "a sound from a scene without one"
+scene_json '"sound":"../a.opus",'
+expect 4 "in the scene's folder" share "$stream" -o "$dir/p.html" --sound "$dir/scene"
+
 # Without a scene.
 expect 0 "without a scene" share -o "$dir/player.html"
 bare "$dir/player.html" | cmp - <(sed '/^<!-- poster -->$/d' "$page") || bad "the page without a scene is another one"
