@@ -13,7 +13,9 @@
  * the whole image, one tier less only within 25 dB.
  */
 #define TIERS_BEHIND 4
-#define ROOM 0.75      /* share of the budget that the finer image may take according to the estimate */
+#define TIER_BUDGETS \
+    3             /* for that reason an image may take longer before tiers are left out: few sharp images, not many blurred */
+#define ROOM 0.75 /* share of the budget that the finer image may take according to the estimate */
 #define TIER_TIMES 2.0 /* estimated ratio of the render times with and without a tier */
 
 void adcgs_play_scale_init(adcgs_play_scale *scale, int tiers)
@@ -28,6 +30,12 @@ int adcgs_play_scale_coarser(adcgs_play_scale *scale)
     scale->divider += possible && !fewer;
     scale->slow = scale->fast = 0;
     return possible || fewer;
+}
+
+/** The longest render time of the present scale. */
+static double longest(const adcgs_play_scale *scale, double budget)
+{
+    return scale->divider == TIERS_BEHIND && scale->tiers > 1 ? TIER_BUDGETS * budget : budget;
 }
 
 /** True if the last dropped tier returns before the resolution rises. */
@@ -46,8 +54,9 @@ static double finer_seconds(const adcgs_play_scale *scale, double seconds)
 void adcgs_play_scale_took(adcgs_play_scale *scale, double seconds, double budget)
 {
     const int coarse = scale->divider > 1 || scale->tiers < scale->all;
-    const int fits = coarse && finer_seconds(scale, seconds) <= ROOM * budget;
-    scale->slow = seconds > budget ? scale->slow + 1 : 0;
+    const double room = ROOM * (tier_is_next(scale) ? TIER_BUDGETS : 1) * budget;
+    const int fits = coarse && finer_seconds(scale, seconds) <= room;
+    scale->slow = seconds > longest(scale, budget) ? scale->slow + 1 : 0;
     scale->fast = fits ? scale->fast + 1 : 0;
     if (scale->slow >= SLOW_PICTURES)
         adcgs_play_scale_coarser(scale);
