@@ -105,7 +105,9 @@ static void write_poster(FILE *file, const adcgs_share_scene *scene)
         fprintf(file, "<svg id=\"backdrop\" viewBox=\"0 0 %d %d\" preserveAspectRatio=\"xMidYMid slice\" aria-hidden=\"true\">",
                 poster->width, poster->height);
         fputs("<use href=\"#still\"/></svg>\n", file);
-        fprintf(file, "<svg id=\"poster\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"", poster->width, poster->height);
+        fprintf(file, "<svg id=\"poster\" style=\"--shape:%.4f\" viewBox=\"0 0 %d %d\" preserveAspectRatio=\"xMidYMid slice\" ",
+                (double)poster->width / poster->height, poster->width, poster->height);
+        fputs("role=\"img\" aria-label=\"", file);
         write_title(file, scene, adcgs_share_html);
         fprintf(file, "\"><image id=\"still\" width=\"%d\" height=\"%d\" href=\"", poster->width, poster->height);
         write_poster_address(file, poster);

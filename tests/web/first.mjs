@@ -36,13 +36,25 @@ async function firstPaint() {
                 await new Promise(done => setTimeout(done, 20));
             const inside = frame.contentDocument, box = inside.getElementById('still').getBoundingClientRect();
             return [painted(), frame.contentWindow.adcgs === undefined, Math.round(box.height), inside.querySelector('h1').textContent];`);
-        same(got, [true, true, 300, 's'], 'painted before the script, with the poster and the title');
+        same(got, [true, true, 400, 's'], 'painted before the script, with the poster, which fills the frame, and the title');
         release();
         await browser.run(`const frame = document.getElementById('f');
             for (let i = 0; i < 3000 && !frame.contentDocument.querySelector('.shown'); i++)
                 await new Promise(done => setTimeout(done, 20));
             if (!frame.contentDocument.querySelector('.shown'))
                 throw new Error('no image after the poster');`);
+        for (const [width, height] of [[400, 300], [120, 390], [390, 100]]) {
+            const [poster, scene] = await browser.run(`const frame = document.getElementById('f'), inside = frame.contentWindow;
+                Object.assign(frame, { width: ${width}, height: ${height} });
+                const { call } = inside.adcgs.view, resized = () => [0, 1].every(axis =>
+                    (call.view_inset(axis) > 0) === (${width !== 400} && axis === ${width > height ? 0 : 1}));
+                for (let i = 0; i < 500 && !resized(); i++)
+                    await new Promise(done => setTimeout(done, 20));
+                const box = inside.document.getElementById('poster').getBoundingClientRect();
+                return [[box.left, box.top], [call.view_inset(0) * inside.innerWidth, call.view_inset(1) * inside.innerHeight]];`);
+            check(Math.abs(poster[0] - scene[0]) < 1 && Math.abs(poster[1] - scene[1]) < 1 && (width === 400 || scene[0] + scene[1] > 5),
+                  `the poster in ${width}x${height} begins at ${poster}, the scene at ${scene}`);
+        }
     }, {}, framing, { at: '<script type="text/plain" id="worker-text">', over });
 }
 
