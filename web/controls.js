@@ -187,6 +187,7 @@ function listenToPointer(stage) {
         if (!isOnPicture(event))
             return;
         event.preventDefault();
+        active = performance.now();
         hideHint();
         send(WHEEL, { dy: -event.deltaY / (event.deltaMode ? 3 : WHEEL_STEP) });
     }, { passive: false });

@@ -131,11 +131,12 @@ function requestPivot() {
 
 /** Outside of the filmed region the image is darker; next to the filmed view there is none. */
 function showLimits() {
-    const dark = Math.round(50 * view.call.view_outside()), x = 100 * view.call.view_inset(0), y = 100 * view.call.view_inset(1);
+    const outside = view.call.view_outside(), dark = Math.round(50 * outside), x = 100 * view.call.view_inset(0), y = 100 * view.call.view_inset(1);
     for (const canvas of [$('exact'), $('fast')]) {
         canvas.style.filter = dark ? `brightness(${100 - dark}%)` : '';
         canvas.style.clipPath = x || y ? `inset(${y.toFixed(2)}% ${x.toFixed(2)}%)` : '';
     }
+    explainEdge(outside);
 }
 
 function wake() {
@@ -191,7 +192,6 @@ function takePicture(m) {
     canvas.style.opacity = 1;
     $('fast').hidden = true;
     page.pictures++;
-    page.first = page.first || performance.now() - page.opened;
     if (m.exact)
         page.picture = { width: m.width, height: m.height, time: m.time, digest: m.digest, ms: m.ms, generation: m.id };
     else
@@ -209,6 +209,7 @@ function takePicture(m) {
 /** An image is visible: the first one replaces the poster. */
 function showed(time, exact) {
     const stage = $('stage');
+    page.first = page.first || performance.now() - page.opened;
     if (!stage.classList.contains('shown')) {
         stage.classList.add('shown');
         active = performance.now();

@@ -94,6 +94,18 @@ function showHint() {
     setTimeout(hideHint, 6000);
 }
 
+const EDGE = 0.4;               // of the way from the edge of the filmed region to the limit
+let toldEdge = false;
+
+/** The image gets darker where nothing was filmed: a text explains it once, when the user moves there. */
+function explainEdge(outside) {
+    if (toldEdge || outside < EDGE || performance.now() - active > 1000)
+        return;
+    toldEdge = true;
+    say(hasMouse() ? 'Not filmed from here: the image is a guess (x: no limit)' : 'Not filmed from here: the image is a guess');
+    setTimeout(() => { if (page.message.startsWith('Not filmed')) say(''); }, 4000);
+}
+
 function hideHint() {
     $('hint').hidden = true;
 }
@@ -169,13 +181,13 @@ function helpRows(title, rows) {
 /** The help lists only the inputs of this device. */
 function makeHelp() {
     const lines = view.text(view.call.view_help_lines()).trim().split('\n').map(line => line.split('\t'));
-    const mouse = lines.filter(([keys]) => /drag|wheel/.test(keys)), keys = lines.filter(([name]) => !/drag|wheel/.test(name));
+    const mouse = lines.filter(([keys]) => /drag|clicks|wheel/.test(keys)), keys = lines.filter(([name]) => !/drag|clicks|wheel/.test(name));
     if (sound)
         keys.push(['m', 'sound']);
     const texts = { p: 'save an image', 'h F1': 'this help' };
     const parts = [element('h2', 'Help')];
     if (hasTouch())
-        parts.push(...helpRows('Touch', [['one finger', 'look around'], ['two fingers', 'move and zoom'],
+        parts.push(...helpRows('Touch', [['one finger', 'look around'], ['two fingers', 'move and zoom'], ['two taps', 'orbit around this'],
                                          ...hasStick() ? [['stick', 'fly, and one finger turns; a tap on it ends that']] : []]));
     if (hasMouse())
         parts.push(...helpRows('Mouse', mouse),

@@ -210,6 +210,7 @@ async function controls() {
         type('time', 'l'); await sleep(100); const slider = loops();
         type('play', 'l'); await sleep(100); const button = loops();
         type('shot', 'h'); await until(() => seen('help'), 'help');
+        const twice = [...document.querySelectorAll('#help table')].findIndex(e => e.innerText.includes('orbit around this'));
         const focus = document.activeElement.id, wide = document.getElementById('help').scrollWidth <= innerWidth;
         pointer('pointerdown', 60, 200); pointer('pointerup', 60, 200); await sleep(100);
         const closed = !seen('help');
@@ -217,12 +218,13 @@ async function controls() {
         const digest = document.getElementById('digest').checkVisibility();
         window.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape', bubbles: true })); const escaped = !seen('facts');
         adcgs.seek(adcgs.duration); await sleep(100);
-        return { loops: [before, slider, button], mine, focus, wide, closed, facts, module, digest, escaped,
+        return { loops: [before, slider, button], mine, twice, focus, wide, closed, facts, module, digest, escaped,
                  nameless: [...document.querySelectorAll('button')].filter(b => !b.getAttribute('aria-label') && !b.innerText.trim() &&
                      b.checkVisibility()).map(b => b.id), glyphs: document.getElementById('buttons').innerText.replace(/[0-9./ s]/g, '').trim(),
                  spoken: document.getElementById('time').getAttribute('aria-valuetext'),
                  pressed: document.getElementById('play').getAttribute('aria-pressed') };`);
     same([got.loops, got.mine], [['true', 'false', 'true'], true], 'keys with the focus on the slider and on a button');
+    same(got.twice, 0, 'a double click is among the actions of the mouse');
     same([got.focus, got.wide, got.closed, got.escaped], ['help', true, true, true], 'help: focus, width, a tap outside, escape');
     same([got.facts, got.digest, got.module], [true, true, false], 'information: open, with the digest, without the module');
     same([got.nameless, got.glyphs, got.pressed], [[], '', 'false'], 'names of buttons, glyphs, aria-pressed');
@@ -240,6 +242,27 @@ async function controls() {
         same(failure.shown, [true, true, false, false], 'failure, another try, no progress, no bar');
         same(failure.after, [false, true, false, 's'], 'another file after a failure');
     });
+}
+
+/** Outside of the filmed region the image gets darker, and the first time a text says why. */
+async function edge() {
+    await go(urlOf('share.html', '?autoplay=0&draw=exact')); // a GPU in software stops the page for too long
+    const got = await run(`await settled();
+        const says = [], stage = document.getElementById('stage'), out = async (steps, deltaY) => {
+            for (let i = 0; i < steps; i++) {
+                stage.dispatchEvent(new WheelEvent('wheel', { deltaY, bubbles: true, cancelable: true }));
+                await sleep(30);
+            }
+            says.push(/^Not filmed/.test(adcgs.message));
+        };
+        await out(1, 100);
+        await out(40, 100);
+        const dark = document.getElementById('exact').style.filter;
+        await until(() => adcgs.message === '', 'end of the text');
+        await out(40, -100);
+        await out(40, 100);
+        return [...says, /brightness/.test(dark), adcgs.first > 0];`);
+    same(got, [false, true, false, false, true, true], 'the text near, far, near and far; darkness; the time of the first image');
 }
 
 /** Nothing moves by itself for a user who prefers that, unless the address says so. */
@@ -277,5 +300,5 @@ async function pictures() {
     }
 }
 
-const parts = [firstPaint, playing, controls, withoutScripts, policy, hostile, address, api, embedded, reducedMotion];
+const parts = [firstPaint, playing, controls, withoutScripts, policy, hostile, address, api, embedded, edge, reducedMotion];
 await runParts(shots ? [...parts, pictures] : parts, 480, 360);
