@@ -70,6 +70,8 @@ class Gpu {
         const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, preserveDrawingBuffer: true });
         if (!gl)
             throw new Error('no WebGL2');
+        this.kind = 'webgl2';
+        this.sorts = false;     // it needs the order of the worker
         this.gl = gl;
         this.canvas = canvas;
         this.n = 0;

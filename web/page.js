@@ -21,12 +21,15 @@ const page = window.adcgs = {
     get view() { return view; },
     get generation() { return generation; }, // of the scene's state; that of the last image is in page.picture
     get gpu() { return gpu; },
+    get gpuKind() { return gpu ? gpu.kind : 'none'; }, // webgpu, webgl2, none
+    gpuChosen: null,      // a promise: after it, no other kind takes its place unless one is lost
     get sound() { return sound; },
     get headset() { return headset; },
     offerHeadset: () => offerHeadset(),
 };
 
-let worker, view, gpu = null;
+let worker, view;
+let gpu = null, webgl = null, webgpu = null; // the one in use: WebGPU where it is there, else WebGL2
 const AHEAD = 8388608;          // maximum bytes of a scene on their way to the worker
 let reading = 0;                // number of the scene being read; pieces of others are dropped
 let flow = new Flow(AHEAD);     // of its bytes
@@ -86,13 +89,13 @@ function adapt() {
     gpu.took = 0;
 }
 
-/** Request the splats of a time, and their order for a direction of view. */
+/** Request the splats of a time, and their order for a direction of view, unless the GPU sorts. */
 function requestSplats(time, direction = directionOf(cameraOf(1))) {
-    const turned = direction.some((d, i) => Math.abs(d - packed.direction[i]) > 1e-4);
+    const turned = !gpu.sorts && direction.some((d, i) => Math.abs(d - packed.direction[i]) > 1e-4);
     if (!packing && (packed.time !== time || packed.generation !== generation)) {
         packing = true;
         packed = { time, generation, direction };
-        worker.postMessage({ kind: 'splats', time, direction });
+        worker.postMessage({ kind: 'splats', time, direction: gpu.sorts ? null : direction });
     } else if (!packing && turned) {
         packing = true;
         packed.direction = direction;
@@ -113,6 +116,7 @@ function drawFast() {
     gpu.draw(view.floats(uniforms, 21), camera.getInt32(CAMERA.WIDTH, true), camera.getInt32(CAMERA.HEIGHT, true),
              page.facts.background, information.filter);
     page.fast.drawMs = performance.now() - start;
+    showCanvas();
     $('fast').hidden = false;
     $('exact').style.opacity = 0;
     $('what').textContent = `Moving image ${gpu.canvas.width} × ${gpu.canvas.height}, not exact`;
@@ -157,7 +161,7 @@ function step() {
     showLimits();
     const moving = view.call.view_moving() && !saves;
     if (gpu && gpu.lost)
-        dropGpu('WebGL2 was lost');
+        chooseGpu();
     if (moving && gpu)
         drawFast();
     else
@@ -171,10 +175,67 @@ function step() {
         wake();
 }
 
+// ---- The GPU. ----
+
+/** Without WebGPU, another WebGL2: the first one may be lost too, with the browser's process of the GPU. */
+function renewWebgl() {
+    webgpu = null;
+    try {
+        webgl = new Gpu($('fast').cloneNode());
+    } catch (e) {
+        webgl = null;
+    }
+}
+
+/** WebGPU, else WebGL2, else none. A headset needs WebGL2. */
+function chooseGpu() {
+    const last = gpu, lost = last && last.lost ? `${last.kind === 'webgpu' ? 'WebGPU' : 'WebGL2'} was lost` : '';
+    if (webgpu && webgpu.lost && !headset)
+        renewWebgl();
+    gpu = [headset ? null : webgpu, webgl].find(one => one && !one.lost) || null;
+    if (gpu === last)
+        return;
+    packed.time = null;
+    if (gpu)
+        gpu.n = 0; // until its splats arrive
+    if (lost && gpu)
+        note(lost);
+    else if (lost)
+        dropGpu(lost);
+}
+
 function dropGpu(why) {
-    gpu = null;
     $('fast').hidden = true;
     note(`${why}: moving images are rendered exactly, and smaller if that takes long`);
+}
+
+/** A canvas belongs to one interface for ever. The one in use takes the other's place with its first image. */
+function showCanvas() {
+    const shown = $('fast');
+    if (shown !== gpu.canvas) {
+        gpu.canvas.style.cssText = shown.style.cssText;
+        shown.replaceWith(gpu.canvas);
+    }
+}
+
+/** wanted: webgpu, even in software; webgl2; none; null: WebGPU as soon as an adapter is there, until then WebGL2. */
+async function startGpu(wanted) {
+    let why = 'gpu=none';
+    try {
+        webgl = wanted === 'none' ? null : new Gpu($('fast'));
+    } catch (e) {
+        why = e.message;
+    }
+    chooseGpu();
+    if (wanted !== 'none' && wanted !== 'webgl2')
+        webgpu = await WebGpu.open($('fast').cloneNode(), wanted === 'webgpu').catch(e => {
+            if (wanted === 'webgpu')
+                note(e.message);
+            return null;
+        });
+    chooseGpu();
+    if (!gpu)
+        dropGpu(why);
 }
 
 // ---- Showing images. ----
@@ -235,14 +296,14 @@ function download() {
 
 function takeSplats(m) {
     packing = false;
-    if (!gpu)
-        return;
+    if (!gpu || (!gpu.sorts && !m.indices)) // the splats of WebGPU arrive without an order
+        return wake();
     if (m.texels)
         gpu.take(m.texels, m.n);
-    if (m.n === gpu.n)
+    if (!gpu.sorts && m.n === gpu.n)
         gpu.sort(m.indices);
     page.fast = { ...page.fast, n: m.n, packMs: m.packMs || page.fast.packMs, sortMs: m.sortMs };
-    wake();
+    return wake();
 }
 
 function onReply(m) {

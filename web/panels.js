@@ -208,8 +208,8 @@ function statisticsText() {
     const threads = drawn ? drawn.threads : 1;
     return [`module  ${page.module}, ${threads} thread${threads > 1 ? 's' : ''}`,
             `exact   ${drawn ? `${ms(drawn.ms)} ms, ${drawn.width}x${drawn.height}` : '-'}`,
-            gpu ? `gpu     pack ${ms(fast.packMs)}, sort ${ms(fast.sortMs)}, draw ${ms(fast.tookMs)} ms, size 1/${page.divider}`
-                : 'gpu     none',
+            gpu ? `${page.gpuKind.padEnd(6)}  pack ${ms(fast.packMs)}, ${gpu.sorts ? 'sort and draw' : `sort ${ms(fast.sortMs)}, draw`} ` +
+                `${ms(fast.tookMs)} ms, size 1/${page.divider}` : 'gpu     none',
             `splats  ${fast.n || page.facts.gaussians}`,
             `layers  ${call.view_layers()}`,
             `time    ${call.view_time().toFixed(3)} s, frame ${call.view_frame()} of ${call.view_frames()}`,

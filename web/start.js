@@ -32,13 +32,7 @@ async function load() {
     if (parameters.get('module') === 'exact')
         delete modules.relaxed;
     worker.postMessage({ kind: 'modules', modules, threads: Number(parameters.get('threads')) });
-    try {
-        if (parameters.get('draw') === 'exact')
-            throw new Error('draw=exact');
-        gpu = new Gpu($('fast'));
-    } catch (e) {
-        dropGpu(e.message);
-    }
+    page.gpuChosen = startGpu(parameters.get('draw') === 'exact' ? 'none' : parameters.get('gpu'));
 }
 
 /** ?poster: nothing starts before the user, or the script of another page, wants to play. */

@@ -5,7 +5,7 @@
 let headset = null;             // while it shows the scene
 
 async function offerHeadset() {
-    const there = gpu && navigator.xr ? await navigator.xr.isSessionSupported('immersive-vr').catch(() => false) : false;
+    const there = webgl && navigator.xr ? await navigator.xr.isSessionSupported('immersive-vr').catch(() => false) : false;
     $('vr').hidden = !there;
 }
 
@@ -18,6 +18,7 @@ function axesOf(camera) {
 
 function leaveHeadset() {
     headset = null;
+    chooseGpu();
     $('vr').setAttribute('aria-pressed', false);
     shownKey = '';
     wake();
@@ -26,7 +27,7 @@ function leaveHeadset() {
 async function toggleHeadset() {
     if (headset)
         return headset.end();
-    if (!opened() || !gpu)
+    if (!opened() || !webgl || webgl.lost)
         return null;
     const scene = {
         background: page.facts.background,
@@ -41,7 +42,8 @@ async function toggleHeadset() {
         end: leaveHeadset,
     };
     try {
-        headset = await Headset.enter(gpu, new Place(page.facts, axesOf(cameraOf(1))), scene);
+        headset = await Headset.enter(webgl, new Place(page.facts, axesOf(cameraOf(1))), scene);
+        chooseGpu();
         $('vr').setAttribute('aria-pressed', true);
     } catch (e) {
         say(`The headset does not start: ${e.message}`);

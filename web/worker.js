@@ -156,9 +156,9 @@ function pack(m) {
     const start = performance.now();
     splats = Math.max(0, engine.call.page_pack(m.time));
     const texels = splats ? engine.copy(engine.call.page_texels(), 64 * splats).buffer : new ArrayBuffer(0);
-    const packed = performance.now(), indices = sorted(m.direction);
+    const packed = performance.now(), indices = m.direction ? sorted(m.direction) : null; // WebGPU sorts by itself
     postMessage({ kind: 'splats', time: m.time, n: splats, texels, indices, packMs: packed - start,
-                  sortMs: performance.now() - packed }, [texels, indices]);
+                  sortMs: performance.now() - packed }, indices ? [texels, indices] : [texels]);
 }
 
 function sort(m) {

@@ -59,45 +59,6 @@ async function controls() {
     await shot('facts');
 }
 
-/** Orbits, then compares the GPU's image with the exact one. */
-async function gpu() {
-    await go(urlOf('share.html'));
-    const result = await run(`await settled();
-        if (!adcgs.gpu)
-            return { none: adcgs.notes.join() };
-        adcgs.adaptive = false;
-        pointer('pointerdown', 300, 200);
-        for (let i = 0; i < 8; i++) {
-            pointer('pointermove', 300 + 4 * i, 200 + i);
-            await sleep(30);
-        }
-        // While the pointer is held, the GPU renders repeatedly, finally with splats sorted for this view.
-        let shown = 0, fast = null;
-        await until(() => {
-            pointer('pointermove', 328, 207);
-            shown += adcgs.gpu.sorted === adcgs.gpu.n && !document.getElementById('fast').hidden ? 1 : 0;
-            fast = shown > 5 && !document.getElementById('fast').hidden ? adcgs.gpu.pixels() : null;
-            return fast;
-        }, 'image of the GPU');
-        const n = adcgs.pictures, exact = document.getElementById('exact'), line = document.getElementById('line').textContent;
-        pointer('pointerup', 328, 207);
-        await until(() => adcgs.pictures > n && exact.style.opacity === '1', 'exact image');
-        const slow = exact.getContext('2d').getImageData(0, 0, exact.width, exact.height).data;
-        let sum = 0;
-        for (let i = 0; i < slow.length; i++)
-            sum += (slow[i] - fast[i]) ** 2;
-        const psnr = 10 * Math.log10(255 * 255 / (sum / (0.75 * slow.length)));
-        return { same: slow.length === fast.length, psnr, line, ...adcgs.fast };`);
-    if (result.none) {
-        console.log(`skipped: the GPU's image in ${kind}: ${result.none}`);
-        return;
-    }
-    check(result.same && result.psnr >= 40, `the GPU's image has ${result.psnr} dB against the exact one`);
-    check(/not exact\s*$/.test(result.line), `line below the GPU's image: "${result.line}"`);
-    console.log(`${kind}: GPU ${result.psnr.toFixed(1)} dB, ${result.n} splats`);
-    await shot('orbit');
-}
-
 async function dropped() {
     await go(urlOf('player.html'));
     await shot('empty');
@@ -225,21 +186,6 @@ async function bodiesWithoutEnd() {
     await endless(headless, 400, got => check(got.state === 'failed', `an endless body without a header: ${got.state}`));
 }
 
-/** Without WebGL2 the decoder renders the images during motion, and a note says so. */
-async function withoutGpu() {
-    await go(urlOf('share.html', '?draw=exact'));
-    const got = await run(`await settled(); const n = adcgs.pictures;
-        pointer('pointerdown', 300, 200);
-        for (let i = 0; i < 10; i++) {
-            pointer('pointermove', 300 + 6 * i, 200);
-            await sleep(40);
-        }
-        pointer('pointerup', 360, 200);
-        await until(() => adcgs.pictures > n + 1 && adcgs.drawn.exact, 'images');
-        return report();`);
-    check(got.notes.some(note => /rendered exactly/.test(note)), 'it does not say that WebGL2 is missing');
-}
-
 /** At the width of a phone, with touch. */
 async function phone() {
     await restart(360, 640);
@@ -272,5 +218,5 @@ async function notFused() {
         same(got.module, 'exact', 'the module where relaxed SIMD does not fuse');
 }
 
-await runParts(full ? [digests, controls, gpu, dropped, served, bodiesWithoutEnd, threads, withoutGpu, phone, notFused]
+await runParts(full ? [digests, controls, dropped, served, bodiesWithoutEnd, threads, phone, notFused]
                     : [digests, controls, dropped, bodiesWithoutEnd, threads]);

@@ -124,9 +124,9 @@ export async function restart(width, height, options = {}) {
     browser = await openBrowser(kind, command, profile, { ...options, width, height, flags });
 }
 
-/** Run the tests, at first in a browser of this size. */
-export async function runParts(parts, width = 800, height = 600) {
-    await restart(width, height);
+/** Run the tests, at first in a browser of this size. Options as for openBrowser(). */
+export async function runParts(parts, width = 800, height = 600, options = {}) {
+    await restart(width, height, options);
     try {
         for (const part of parts)
             await part().catch(e => check(false, `${part.name}: ${e.message}`));

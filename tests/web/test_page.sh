@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The page in the available browsers: exact frames, controls, files dropped, truncated and damaged, sound, a stick for thumbs. By
-# default in the first browser; with ADCGS_FULL=1 in each, and also images of the GPU, a server, sizes of phones, and a headset.
+# The page in the available browsers: exact frames, images of the GPU, controls, files dropped, truncated and damaged, sound, a
+# stick for thumbs. By default in the first browser; with ADCGS_FULL=1 in each, and also a server, sizes of phones, and a headset.
 # ADCGS_CHROMIUM and ADCGS_FIREFOX may name the browsers, ADCGS_IWER the emulator of a headset, ADCGS_SHOTS a folder for
 # screenshots. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
@@ -55,7 +55,7 @@ fi
 for kind in chromium firefox; do
     command=${!kind}
     [ -n "$command" ] || { echo "skipped: the page in $kind: not installed"; continue; }
-    for script in first page devices; do
+    for script in first page moving devices; do
         "$node" "${srcdir:-.}/tests/web/$script.mjs" $kind "$command" "$dir" ${ADCGS_FULL:+full} || bad "$script in $kind"
     done
     [ -n "${ADCGS_FULL-}" ] || break
