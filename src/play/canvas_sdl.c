@@ -9,11 +9,11 @@
 
 static int width_of(void *arg, int size, const char *text)
 {
-    const adcgs_canvas *const c = arg;
+    const adcgs_sdl_canvas *const c = arg;
     return c->fonts ? adcgs_fonts_width(c->fonts, size, text) : adcgs_glyph_width(size, text);
 }
 
-void adcgs_canvas_init(adcgs_canvas *c, SDL_Renderer *renderer)
+void adcgs_sdl_canvas_init(adcgs_sdl_canvas *c, SDL_Renderer *renderer)
 {
     c->renderer = renderer;
     c->fonts = adcgs_fonts_open(&c->plain);
@@ -22,7 +22,7 @@ void adcgs_canvas_init(adcgs_canvas *c, SDL_Renderer *renderer)
     c->type = (adcgs_type){.width = width_of, .arg = c};
 }
 
-void adcgs_canvas_forget(adcgs_canvas *c)
+void adcgs_sdl_canvas_forget(adcgs_sdl_canvas *c)
 {
     for (int i = 0; i < ADCGS_CANVAS_LINES; i++)
         if (c->line[i].texture) {
@@ -31,9 +31,9 @@ void adcgs_canvas_forget(adcgs_canvas *c)
         }
 }
 
-void adcgs_canvas_clear(adcgs_canvas *c)
+void adcgs_sdl_canvas_clear(adcgs_sdl_canvas *c)
 {
-    adcgs_canvas_forget(c);
+    adcgs_sdl_canvas_forget(c);
     adcgs_fonts_close(&c->fonts);
 }
 
@@ -42,7 +42,7 @@ static SDL_Color colour_of(uint32_t colour)
     return (SDL_Color){(Uint8)(colour >> 24), (Uint8)(colour >> 16), (Uint8)(colour >> 8), (Uint8)colour};
 }
 
-static int draw_rect(adcgs_canvas *c, const adcgs_shape *shape)
+static int draw_rect(adcgs_sdl_canvas *c, const adcgs_shape *shape)
 {
     const SDL_Color colour = colour_of(shape->colour);
     const SDL_Rect to = {shape->place.x, shape->place.y, shape->place.width, shape->place.height};
@@ -50,7 +50,7 @@ static int draw_rect(adcgs_canvas *c, const adcgs_shape *shape)
 }
 
 /** A convex polygon is a fan of triangles. */
-static int draw_polygon(adcgs_canvas *c, const adcgs_shape *shape)
+static int draw_polygon(adcgs_sdl_canvas *c, const adcgs_shape *shape)
 {
     SDL_Vertex corners[ADCGS_SHAPE_POINTS];
     int indices[3 * ADCGS_SHAPE_POINTS], n = 0;
@@ -65,7 +65,7 @@ static int draw_polygon(adcgs_canvas *c, const adcgs_shape *shape)
 }
 
 /** Renders text in the letters of font.h. A character outside ASCII is one question mark. */
-static int draw_letters(adcgs_canvas *c, const adcgs_shape *shape, const char *text)
+static int draw_letters(adcgs_sdl_canvas *c, const adcgs_shape *shape, const char *text)
 {
     const SDL_Color colour = colour_of(shape->colour);
     const int scale = adcgs_glyph_scale(shape->size), high = scale * ADCGS_GLYPH_HEIGHT;
@@ -88,11 +88,11 @@ static int draw_letters(adcgs_canvas *c, const adcgs_shape *shape, const char *t
 }
 
 /** Provides the texture of a line of text, in place of the one that was not used for the longest time. */
-static adcgs_canvas_line *need_line(adcgs_canvas *c, int size, const char *text)
+static adcgs_sdl_canvas_line *need_line(adcgs_sdl_canvas *c, int size, const char *text)
 {
-    adcgs_canvas_line *oldest = &c->line[0];
+    adcgs_sdl_canvas_line *oldest = &c->line[0];
     for (int i = 0; i < ADCGS_CANVAS_LINES; i++) {
-        adcgs_canvas_line *const line = &c->line[i];
+        adcgs_sdl_canvas_line *const line = &c->line[i];
         if (line->texture && line->size == size && !strcmp(line->text, text))
             return line;
         if (!line->texture || (oldest->texture && line->used < oldest->used))
@@ -103,21 +103,21 @@ static adcgs_canvas_line *need_line(adcgs_canvas *c, int size, const char *text)
         return NULL;
     if (oldest->texture)
         SDL_DestroyTexture(oldest->texture);
-    *oldest = (adcgs_canvas_line){.texture = SDL_CreateTextureFromSurface(c->renderer, surface),
-                                  .size = size,
-                                  .width = surface->w,
-                                  .height = surface->h};
+    *oldest = (adcgs_sdl_canvas_line){.texture = SDL_CreateTextureFromSurface(c->renderer, surface),
+                                      .size = size,
+                                      .width = surface->w,
+                                      .height = surface->h};
     SDL_strlcpy(oldest->text, text, sizeof oldest->text);
     SDL_FreeSurface(surface);
     return oldest->texture ? oldest : NULL;
 }
 
-static int draw_text(adcgs_canvas *c, const adcgs_shape *shape, const char *text)
+static int draw_text(adcgs_sdl_canvas *c, const adcgs_shape *shape, const char *text)
 {
     if (!c->fonts)
         return draw_letters(c, shape, text);
     const SDL_Color colour = colour_of(shape->colour);
-    adcgs_canvas_line *const line = need_line(c, shape->size, text);
+    adcgs_sdl_canvas_line *const line = need_line(c, shape->size, text);
     if (!line) /* for example, all characters have no width: no reason to end the player */
         return 1;
     line->used = c->turn;
@@ -126,7 +126,7 @@ static int draw_text(adcgs_canvas *c, const adcgs_shape *shape, const char *text
            !SDL_SetTextureAlphaMod(line->texture, colour.a) && !SDL_RenderCopy(c->renderer, line->texture, NULL, &to);
 }
 
-int adcgs_canvas_draw(adcgs_canvas *c, const adcgs_drawing *d)
+int adcgs_sdl_canvas_draw(adcgs_sdl_canvas *c, const adcgs_drawing *d)
 {
     int good = !SDL_SetRenderDrawBlendMode(c->renderer, SDL_BLENDMODE_BLEND);
     c->turn++;

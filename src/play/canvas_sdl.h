@@ -9,29 +9,29 @@
 #define ADCGS_CANVAS_LINES 128
 
 /** A line of text that was rendered before. */
-typedef struct adcgs_canvas_line {
+typedef struct adcgs_sdl_canvas_line {
     SDL_Texture *texture; /**< NULL: unused */
     char text[ADCGS_TEXT_BYTES];
     int size, width, height;
     unsigned used; /**< the drawing of its last use */
-} adcgs_canvas_line;
+} adcgs_sdl_canvas_line;
 
-typedef struct adcgs_canvas {
+typedef struct adcgs_sdl_canvas {
     SDL_Renderer *renderer;
     adcgs_fonts *fonts; /**< NULL: letters are those of font.h */
     const char *plain;  /**< the reason for that; "": none */
     adcgs_type type;
     unsigned turn; /**< number of the drawing */
-    adcgs_canvas_line line[ADCGS_CANVAS_LINES];
-} adcgs_canvas;
+    adcgs_sdl_canvas_line line[ADCGS_CANVAS_LINES];
+} adcgs_sdl_canvas;
 
 /** The canvas must not move while it is in use. */
-void adcgs_canvas_init(adcgs_canvas *canvas, SDL_Renderer *renderer);
+void adcgs_sdl_canvas_init(adcgs_sdl_canvas *canvas, SDL_Renderer *renderer);
 /** Frees everything, before the renderer. */
-void adcgs_canvas_clear(adcgs_canvas *canvas);
+void adcgs_sdl_canvas_clear(adcgs_sdl_canvas *canvas);
 /** Forgets all textures, since the renderer has lost them. */
-void adcgs_canvas_forget(adcgs_canvas *canvas);
+void adcgs_sdl_canvas_forget(adcgs_sdl_canvas *canvas);
 /** Renders all shapes. \return 0 after a failure */
-int adcgs_canvas_draw(adcgs_canvas *canvas, const adcgs_drawing *drawing);
+int adcgs_sdl_canvas_draw(adcgs_sdl_canvas *canvas, const adcgs_drawing *drawing);
 
 #endif

@@ -20,7 +20,7 @@ struct adcgs_window {
     SDL_Renderer *renderer;
     SDL_Texture *picture;
     int picture_size[2];
-    adcgs_canvas canvas;
+    adcgs_sdl_canvas canvas;
     Uint32 wake_event;
 };
 
@@ -78,7 +78,7 @@ static void window_close(adcgs_window **window)
     *window = NULL;
     if (!w)
         return;
-    adcgs_canvas_clear(&w->canvas);
+    adcgs_sdl_canvas_clear(&w->canvas);
     if (w->picture)
         SDL_DestroyTexture(w->picture);
     if (w->renderer)
@@ -129,7 +129,7 @@ static adcgs_status open_parts(adcgs_window *w, const char *title, int width, in
         w->renderer = SDL_CreateRenderer(w->window, -1, SDL_RENDERER_SOFTWARE);
     if (!w->renderer)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.100s: cannot render in a window: %s", title, SDL_GetError());
-    adcgs_canvas_init(&w->canvas, w->renderer);
+    adcgs_sdl_canvas_init(&w->canvas, w->renderer);
     SDL_SetWindowMinimumSize(w->window, SMALLEST, SMALLEST);
     w->wake_event = SDL_RegisterEvents(1);
     return ADCGS_OK;
@@ -239,7 +239,7 @@ static int window_event(adcgs_window *w, int milliseconds, adcgs_event *out)
         break;
     case SDL_RENDER_TARGETS_RESET:
     case SDL_RENDER_DEVICE_RESET:
-        adcgs_canvas_forget(&w->canvas);
+        adcgs_sdl_canvas_forget(&w->canvas);
         out->kind = ADCGS_EVENT_SIZE;
         break;
     case SDL_KEYDOWN:
@@ -341,7 +341,7 @@ static adcgs_status window_show(adcgs_window *w, const adcgs_drawing *drawing, u
     int good = !SDL_SetRenderDrawColor(w->renderer, 0, 0, 0, 255) && !SDL_RenderClear(w->renderer);
     if (good && w->picture)
         good = !SDL_RenderCopy(w->renderer, w->picture, NULL, NULL);
-    good = good && adcgs_canvas_draw(&w->canvas, drawing);
+    good = good && adcgs_sdl_canvas_draw(&w->canvas, drawing);
     if (good && rgb) /* before they are shown, since their contents are undefined afterwards */
         good = !SDL_RenderReadPixels(w->renderer, NULL, SDL_PIXELFORMAT_RGB24, rgb, 3 * width);
     SDL_RenderPresent(w->renderer);

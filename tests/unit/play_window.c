@@ -18,7 +18,7 @@ static const int sizes[][2] = {{320, 240}, {1280, 720}, {3840, 2160}};
 typedef struct screen {
     const adcgs_sdl *sdl;
     adcgs_window *window;
-    adcgs_camera cameras[2];
+    adcgs_filmed_camera cameras[2];
     adcgs_play_state play;
     adcgs_drawing drawing;
     uint8_t *rgb;
@@ -40,7 +40,7 @@ static screen *open_screen(const char *fonts)
         return NULL;
     }
     assert_int_equal(s->sdl->open(&s->window, "a window", 320, 240, &error), ADCGS_OK);
-    s->cameras[0] = s->cameras[1] = make_camera();
+    s->cameras[0] = s->cameras[1] = (adcgs_filmed_camera){.camera = make_camera(), .path = -1};
     s->play = make_state(s->cameras);
     return s;
 }
