@@ -32,6 +32,8 @@ adcgs_status adcgs_random_follower(adcgs_model *model, const adcgs_model *before
 /** A stream of such models, some of them predicted, some with the networks of the model before; cameras and metadata. */
 adcgs_status adcgs_random_stream(adcgs_stream *stream, const adcgs_params *params, uint32_t segments, uint32_t n, int depth,
                                  uint64_t *state, adcgs_error *error);
+/** Stores one camera in front of the scene, without a time. */
+adcgs_status adcgs_random_front(adcgs_stream *stream, adcgs_error *error);
 /**
  * The segments of a stream whose parameters are set: every third a key of n anchors, the others predicted, each with at most
  * `added` new anchors; consecutive in time.

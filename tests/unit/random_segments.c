@@ -41,6 +41,23 @@ static adcgs_status random_cameras(adcgs_stream *stream, uint64_t *state, adcgs_
     return ADCGS_OK;
 }
 
+adcgs_status adcgs_random_front(adcgs_stream *stream, adcgs_error *error)
+{
+    static const adcgs_camera front = {.width = 8,
+                                       .height = 8,
+                                       .fx = 8,
+                                       .fy = 8,
+                                       .cx = 4,
+                                       .cy = 4,
+                                       .near_plane = 0.1,
+                                       .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3}};
+    stream->cameras = adcgs_alloc(NULL, 1, sizeof *stream->cameras, error);
+    if (!stream->cameras)
+        return ADCGS_ERR_MEMORY;
+    stream->cameras[stream->n_cameras++] = (adcgs_stored_camera){.camera = front, .time = (double)NAN, .path = -1};
+    return ADCGS_OK;
+}
+
 static adcgs_status random_text(char **out, const char *format, int number, adcgs_error *error)
 {
     *out = adcgs_alloc(NULL, 64, 1, error);

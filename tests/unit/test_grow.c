@@ -68,17 +68,7 @@ static int setup(void **state)
     adcgs_stream_init(s);
     s->params = params;
     s->slice_log2 = ADCGS_SLICE_LOG2_MIN;
-    s->cameras = adcgs_alloc(NULL, 1, sizeof *s->cameras, NULL);
-    s->n_cameras = 1;
-    s->cameras[0] = (adcgs_camera){.width = 8,
-                                   .height = 8,
-                                   .fx = 8,
-                                   .fy = 8,
-                                   .cx = 4,
-                                   .cy = 4,
-                                   .near_plane = 0.1,
-                                   .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3}};
-    if (adcgs_random_turns(s, SEGMENTS, 80, TURN, 70, &seed, NULL) != ADCGS_OK)
+    if (adcgs_random_front(s, NULL) != ADCGS_OK || adcgs_random_turns(s, SEGMENTS, 80, TURN, 70, &seed, NULL) != ADCGS_OK)
         return -1;
     *state = f;
     return adcgs_stream_write(s, &f->whole, NULL) == ADCGS_OK && grow_all(f) == ADCGS_OK ? 0 : -1;

@@ -23,17 +23,8 @@ static int setup(void **state)
     uint64_t seed = 14;
     adcgs_stream *s = &f->stream;
     adcgs_random_small_params(&params, 2, &seed);
-    s->cameras = adcgs_alloc(NULL, 1, sizeof *s->cameras, NULL);
-    s->n_cameras = 1;
-    s->cameras[0] = (adcgs_stored_camera){.path = -1};
-    s->cameras[0].camera = (adcgs_camera){.width = 8,
-                                          .height = 8,
-                                          .fx = 8,
-                                          .fy = 8,
-                                          .cx = 4,
-                                          .cy = 4,
-                                          .near_plane = 0.1,
-                                          .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3}};
+    if (adcgs_random_front(s, NULL) != ADCGS_OK)
+        return -1;
     return fixture_turns(f, &params, SEGMENTS, 80, 4, 70, &seed);
 }
 

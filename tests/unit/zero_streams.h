@@ -9,6 +9,7 @@
 
 #include <adcgs/adcgs.h>
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 
@@ -90,7 +91,9 @@ static inline void make_stream(adcgs_stream *stream, const nothing *what)
     }
     for (; stream->n_cameras < what->cameras; stream->n_cameras++)
         stream->cameras[stream->n_cameras] =
-            (adcgs_camera){.width = 1, .height = 1, .fx = 1, .fy = 1, .near_plane = 1, .cam_to_world = {1}};
+            (adcgs_stored_camera){.camera = {.width = 1, .height = 1, .fx = 1, .fy = 1, .near_plane = 1, .cam_to_world = {1}},
+                                  .time = (double)NAN,
+                                  .path = -1};
 }
 
 static inline void set_level(uint8_t *stream, size_t size, int level)
