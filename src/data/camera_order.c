@@ -48,7 +48,7 @@ static adcgs_status find(adcgs_camera_order *tracks, const adcgs_scene_view *vie
 {
     uint32_t cameras;
     ADCGS_TRY(adcgs_group_views(views, n, of, tracks->order, &cameras, error));
-    if (n < STAY * cameras)
+    if (cameras > 1 && n < STAY * cameras)
         return find_moving(tracks, views, n, error);
     tracks->n = cameras;
     for (uint32_t i = 0; i < n; i++)

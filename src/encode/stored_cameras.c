@@ -63,15 +63,6 @@ static void add_camera(adcgs_stream *s, const adcgs_scene *scene, const adcgs_sc
                                                        .path = -1};
 }
 
-/** Number of movements between successive views. */
-static uint32_t steps_of(const adcgs_scene_view *views, uint32_t n)
-{
-    uint32_t steps = 0;
-    for (uint32_t i = 1; i < n; i++)
-        steps += adcgs_camera_compare(&views[i - 1].camera, &views[i].camera) != 0;
-    return steps;
-}
-
 /** The filmed paths of the scene. views: the training views, sorted by camera and time. */
 static adcgs_status find_paths(adcgs_filmed_path paths[ADCGS_STORED_PATHS_MAX], const adcgs_scene_view *views, uint32_t n,
                                double scale, adcgs_error *error)
@@ -83,7 +74,7 @@ static adcgs_status find_paths(adcgs_filmed_path paths[ADCGS_STORED_PATHS_MAX], 
             ;
         ADCGS_TRY(adcgs_camera_order_find(&order, &views[begin], end - begin, error));
         adcgs_status status = ADCGS_OK;
-        if (order.moves && steps_of(&views[begin], end - begin) > 0)
+        if (order.moves)
             status = adcgs_filmed_path_make(&paths[found], &views[begin], end - begin, scale, error);
         adcgs_camera_order_clear(&order);
         if (status != ADCGS_OK)

@@ -148,6 +148,8 @@ static void test_stored_cameras(void **state)
     assert_stored(w, 4, 2, -1);
     make_scene(w, (const char *[2]){"left/", "right/"}, (const int[2]){0, 0});
     assert_stored(w, 2, 0, 0); /* fixed cameras have no time, and each is stored once */
+    w->scene.n_views[ADCGS_SPLIT_TRAIN] = 4;
+    assert_stored(w, 2, 0, 0); /* also after two frames, as at the beginning of live footage */
     make_scene(w, (const char *[2]){"left/", "right/"}, (const int[2]){1, 0});
     assert_stored(w, 2, 1, -1);
     for (int i = 0; i < 2 * STEPS; i++) /* photographs from everywhere, at times of their own */
@@ -271,7 +273,7 @@ static void play_at(film *f, double part, double seconds)
     f->play.clock.playing = 0;
 }
 
-/** While it plays, a view beside the path comes into the filmed region, and returns to its place where that is inside again. */
+/** While it plays, a view next to the path comes into the filmed region, and returns to its place where that is inside again. */
 static void test_view_returns(void **state)
 {
     const adcgs_event down = {.kind = ADCGS_EVENT_BUTTON, .button = 1, .down = 1, .x = 300, .y = 200};
