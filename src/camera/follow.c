@@ -10,12 +10,15 @@
 
 #include <stdlib.h>
 
-adcgs_status adcgs_filmed_cameras_get(adcgs_filmed_camera *cameras, const adcgs_decoder *decoder, const adcgs_info *info,
+adcgs_status adcgs_filmed_cameras_get(adcgs_filmed_camera **cameras, const adcgs_decoder *decoder, const adcgs_info *info,
                                       adcgs_error *error)
 {
+    adcgs_filmed_camera *const all = *cameras = calloc((size_t)info->cameras + 1, sizeof *all);
+    if (!all)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %d cameras", info->cameras);
     for (int i = 0; i < info->cameras; i++) {
-        ADCGS_TRY(adcgs_get_camera(decoder, i, &cameras[i].camera, error));
-        ADCGS_TRY(adcgs_get_camera_time(decoder, i, &cameras[i].time, &cameras[i].path, error));
+        ADCGS_TRY(adcgs_get_camera(decoder, i, &all[i].camera, error));
+        ADCGS_TRY(adcgs_get_camera_time(decoder, i, &all[i].time, &all[i].path, error));
     }
     return ADCGS_OK;
 }

@@ -18,8 +18,8 @@ typedef struct adcgs_follow {
     double begin, end;          /**< of the path, seconds */
 } adcgs_follow;
 
-/** cameras: [info->cameras]. */
-adcgs_status adcgs_filmed_cameras_get(adcgs_filmed_camera *cameras, const adcgs_decoder *decoder, const adcgs_info *info,
+/** The stored cameras, [info->cameras]. The caller frees *cameras with free(), also after a failure. */
+adcgs_status adcgs_filmed_cameras_get(adcgs_filmed_camera **cameras, const adcgs_decoder *decoder, const adcgs_info *info,
                                       adcgs_error *error);
 /** The path with this number among n stored cameras. */
 adcgs_status adcgs_follow_init(adcgs_follow *follow, const adcgs_filmed_camera *cameras, int n, int path, adcgs_error *error);

@@ -168,11 +168,9 @@ static adcgs_status make_from_film(adcgs_camera_path *out, const adcgs_follow *f
 /** The first filmed path; follow->spline.n is 0 if the stream has none. */
 static adcgs_status find_film(adcgs_follow *follow, const adcgs_decoder *decoder, const adcgs_info *info, adcgs_error *error)
 {
+    adcgs_filmed_camera *cameras;
     *follow = (adcgs_follow){.begin = 0};
-    adcgs_filmed_camera *const cameras = calloc((size_t)info->cameras + 1, sizeof *cameras);
-    if (!cameras)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %d cameras", info->cameras);
-    adcgs_status status = adcgs_filmed_cameras_get(cameras, decoder, info, error);
+    adcgs_status status = adcgs_filmed_cameras_get(&cameras, decoder, info, error);
     if (status == ADCGS_OK)
         status = adcgs_follow_init(follow, cameras, info->cameras, 0, error);
     free(cameras);

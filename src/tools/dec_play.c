@@ -27,10 +27,7 @@ static adcgs_status collect_properties(const adcgs_dec_play *how, adcgs_decoder 
     adcgs_camera_path frames;
     ADCGS_TRY(adcgs_get_info(decoder, info, sizeof *info, error));
     ADCGS_TRY(adcgs_camera_path_check_times(info, &request, error));
-    *cameras = calloc((size_t)info->cameras + 1, sizeof **cameras);
-    if (!*cameras)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory for %d cameras", how->input, info->cameras);
-    ADCGS_TRY(adcgs_filmed_cameras_get(*cameras, decoder, info, error));
+    ADCGS_TRY(adcgs_filmed_cameras_get(cameras, decoder, info, error));
     /* The first view is the camera of a single frame; the window keeps its shape, so the view is not stretched to a size. */
     request.has_times = 1;
     request.begin = request.end = info->time_start;

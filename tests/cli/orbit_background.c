@@ -67,8 +67,8 @@ static int measure(const char *path)
         fprintf(stderr, "%s\n", error.text);
         return 1;
     }
-    adcgs_filmed_camera *const cameras = calloc((size_t)info.cameras + 1, sizeof *cameras);
-    if (!cameras || adcgs_filmed_cameras_get(cameras, decoder, &info, &error) != ADCGS_OK)
+    adcgs_filmed_camera *cameras;
+    if (adcgs_filmed_cameras_get(&cameras, decoder, &info, &error) != ADCGS_OK)
         return 1;
     for (int i = 0; i < info.cameras; i++) {
         const double time = isnan(cameras[i].time) ? info.time_start : cameras[i].time;

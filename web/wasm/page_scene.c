@@ -165,8 +165,8 @@ const adcgs_filmed_camera *PAGE_EXPORT(page_cameras)(void)
 {
     const adcgs_info *info = page_info();
     free(scene.cameras);
-    scene.cameras = info ? calloc((size_t)info->cameras + 1, sizeof *scene.cameras) : NULL;
-    if (!scene.cameras || adcgs_filmed_cameras_get(scene.cameras, scene.decoder, info, &scene.error) != ADCGS_OK)
+    scene.cameras = NULL;
+    if (!info || adcgs_filmed_cameras_get(&scene.cameras, scene.decoder, info, &scene.error) != ADCGS_OK)
         return NULL;
     return scene.cameras;
 }
