@@ -133,16 +133,6 @@ function requestPivot() {
                              x: view.call.view_pivot_at(0), y: view.call.view_pivot_at(1) });
 }
 
-/** Outside of the filmed region the image is darker; next to the filmed view there is none. */
-function showLimits() {
-    const outside = view.call.view_outside(), dark = Math.round(50 * outside), x = 100 * view.call.view_inset(0), y = 100 * view.call.view_inset(1);
-    for (const canvas of [$('exact'), $('fast')]) {
-        canvas.style.filter = dark ? `brightness(${100 - dark}%)` : '';
-        canvas.style.clipPath = x || y ? `inset(${y.toFixed(2)}% ${x.toFixed(2)}%)` : '';
-    }
-    explainEdge(outside);
-}
-
 function wake() {
     if (asked)
         return;
@@ -158,7 +148,8 @@ function step() {
     followSound();
     fitCanvas();
     requestPivot();
-    showLimits();
+    styleLimits(view.call, [$('exact'), $('fast')]);
+    explainEdge(view.call.view_outside());
     const moving = view.call.view_moving() && !saves;
     if (gpu && gpu.lost)
         chooseGpu();

@@ -17,6 +17,7 @@ mkdir -p "$out"
 share engine.js 'Engine, memoryOf, OK, ERR_FPENV, ARRIVED_SEGMENT, ARRIVED_END, CAMERA'
 share events.js 'KEYS, KEY, BUTTON, MOTION, WHEEL, LOST, WHEEL_STEP, ZOOM_STEP'
 share gpu.js 'Gpu, VERTEX, FRAGMENT'
+share limits.js 'styleLimits'
 share source.js 'Flow, readStream'
 cp "$here"/*.js "$here"/*.d.ts "$here/README.md" "$out"
 cp "$here/../../COPYING" "$out/LICENSE"

@@ -5,7 +5,7 @@ import { AdcgsError, open } from './adcgs.js';
 import { Input } from './input.js';
 import { CONTENT } from './player_content.js';
 import { isBusy, isFast, paint, release } from './paint.js';
-import { findPivot, showLimits } from './region.js';
+import { findPivot, styleLimits } from './region.js';
 
 const Base = globalThis.HTMLElement ?? class {}; // a server may import this file, too
 
@@ -212,7 +212,7 @@ export class AdcgsPlayer extends Base {
         call.view_tick(performance.now() / 1000);
         call.view_resize(pixels(this.clientWidth), pixels(this.clientHeight), dense);
         findPivot(this.#clip, call);
-        showLimits(call, this.#part('canvas').style);
+        styleLimits(call, [this.#part('canvas')]);
         if (isFast(this.#part('canvas')) === null) this.#newCanvas();
         const isWaiting = isBusy(this.#part('canvas'));
         if (!isWaiting)

@@ -12,9 +12,4 @@ export function findPivot(clip, call) {
         call.view_pivot(number, ...new Float64Array(clip.engine.copy(at, 24).buffer));
 }
 
-/** Outside of the filmed region the image is darker; next to the filmed view there is none. */
-export function showLimits(call, style) {
-    const dark = Math.round(50 * call.view_outside()), x = 100 * call.view_inset(0), y = 100 * call.view_inset(1);
-    style.filter = dark ? `brightness(${100 - dark}%)` : '';
-    style.clipPath = x || y ? `inset(${y.toFixed(2)}% ${x.toFixed(2)}%)` : '';
-}
+export { styleLimits } from './limits.js';
