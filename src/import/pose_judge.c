@@ -4,7 +4,7 @@
 
 #include "import/pose_judge.h"
 
-/** Refuses a scene of few of the images. */
+/** Refuses a scene in which too small a share of the images has a pose. */
 static adcgs_status judge_number(const adcgs_import_job *job)
 {
     static const char *const things[] = {"images", "frames", "cameras"};

@@ -29,7 +29,7 @@ typedef struct adcgs_colmap {
     double deviation;       /**< sum of the mean reprojection errors of these points, in pixels */
     uint32_t *training;     /**< ids of the training images, ascending; NULL: unknown */
     size_t n_training;
-    adcgs_colmap_angles *angles; /**< receives the angles of points as they are read; NULL: not wanted */
+    adcgs_colmap_angles *angles; /**< receives the angles of points during reading; NULL: not wanted */
     /* Position of the reader, for messages. */
     const char *path, *unit; /**< unit: "line", or the kind of element ("camera") */
     uint64_t index;

@@ -33,7 +33,7 @@ int adcgs_filmed_view_has_path(const adcgs_filmed_view *view);
 void adcgs_filmed_view_start(adcgs_filmed_view *view, adcgs_orbit_control *control, double time);
 /**
  * Moves the view with the path's camera. Call it when the time has changed. seconds: since the last call, if the user lets the
- * scene play, else 0. Then a view beside the path returns to the filmed region, and to its place when that is inside again.
+ * scene play, else 0. Then a view next to the path returns to the filmed region, and to its place when that is inside again.
  */
 void adcgs_filmed_view_tick(adcgs_filmed_view *view, adcgs_orbit_control *control, double time, double seconds);
 /** The user moved the view, or set another centre: it keeps its place relative to the path's camera from now on. */

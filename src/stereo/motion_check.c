@@ -12,9 +12,9 @@
 #define FILM_FAR 0.4   /* camera distances per clip: slower motion is found without lifetimes */
 #define AHEAD 4        /* frames, of the prediction */
 #define SAMPLES 1000   /* points that predict */
-#define PREDICT_MOST \
-    25.0 /* median error of the prediction in distances of neighbours: 12 to 16 in four generated films, 41 in
-                             nrnerf_hand, whose velocities are wrong */
+/* Median error of the prediction, in distances of neighbours: 12 to 16 in four generated films, 41 in nrnerf_hand, whose
+ * velocities are wrong. */
+#define PREDICT_MOST 25.0
 
 static int is_independent(const adcgs_stereo_point *p)
 {
@@ -77,7 +77,6 @@ static adcgs_status find_error(double *median, const adcgs_stereo *found, uint32
     for (uint32_t i = 0, frame = 0; i < found->n_moving; i += step) {
         if (found->moving[i].in_place)
             continue;
-        frame = 0;
         while (frame < found->n_frames && found->frame_time[frame] < found->moving[i].t)
             frame++;
         if (frame + ahead >= found->n_frames)

@@ -8,7 +8,7 @@ const urlOf = (name, query = '') => kit.urlOf(name, `?autoplay=0${query}`);
 // Chromium gives an adapter in software, where a machine has no other.
 const flags = ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan', '--use-vulkan=swiftshader',
                '--use-angle=swiftshader'];
-const WEBGL = "(document.createElement('canvas').getContext('webgl2') ? 'webgl2' : 'none')"; // what remains without WebGPU
+const WEBGL = "(document.createElement('canvas').getContext('webgl2') ? 'webgl2' : 'none')"; // the interface without WebGPU
 let webgpu = false; // whether the page has WebGPU
 const DECIBELS = 40; // of an image against the exact one
 
@@ -140,7 +140,7 @@ async function order() {
     same(got, { wrong: [...counts, 0].map(() => -1), lost: false }, `first wrong place in the order of ${counts} splats`);
 }
 
-/** A lost device: WebGL2 goes on, and after that the decoder. */
+/** A lost device: WebGL2 continues, and after that the decoder. */
 async function lost() {
     if (!webgpu)
         return;
