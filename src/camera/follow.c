@@ -4,7 +4,7 @@
 
 #include "camera/follow.h"
 
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 
 #include <adcgs/decoder.h>
 

@@ -5,7 +5,7 @@
 #include "camera/orbit_control.h"
 
 #include "base/base.h"
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 
 #include <math.h>
 

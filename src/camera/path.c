@@ -6,8 +6,8 @@
 
 #include "camera/follow.h"
 #include "camera/pivot.h"
-#include "camera/rotation.h"
-#include "cli/cli.h"
+#include "geometry/rotation.h"
+#include "system/numbers.h"
 
 #include <adcgs/decoder.h>
 

@@ -4,9 +4,9 @@
 
 #include "camera/euler.h"
 #include "camera/path_files.h"
-#include "camera/rotation.h"
-#include "io/atomic.h"
-#include "io/file.h"
+#include "geometry/rotation.h"
+#include "system/atomic.h"
+#include "system/file.h"
 
 #include <errno.h>
 #include <math.h>

@@ -4,8 +4,8 @@
 
 #include "camera/path_files.h"
 
-#include "camera/rotation.h"
-#include "io/extension.h"
+#include "geometry/rotation.h"
+#include "system/extension.h"
 
 #include <adcgs/decoder.h>
 

@@ -4,7 +4,7 @@
 
 #include "camera/path.h"
 
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 
 #include <stdlib.h>
 

@@ -4,8 +4,8 @@
 
 #include "camera/path_files.h"
 
-#include "camera/rotation.h"
-#include "data/camera_json.h"
+#include "geometry/rotation.h"
+#include "scene/camera_json.h"
 
 #include <math.h>
 #include <stdio.h>

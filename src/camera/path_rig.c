@@ -2,8 +2,8 @@
 /** \file Camera paths around the stored cameras. */
 #include "config.h"
 
-#include "camera/rotation.h"
 #include "camera/spline.h"
+#include "geometry/rotation.h"
 
 #include <adcgs/decoder.h>
 

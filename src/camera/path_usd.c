@@ -4,10 +4,10 @@
 
 #include "camera/euler.h"
 #include "camera/path_files.h"
-#include "camera/rotation.h"
 #include "camera/usda.h"
-#include "data/pose_check.h"
-#include "io/atomic.h"
+#include "geometry/rotation.h"
+#include "scene/pose_check.h"
+#include "system/atomic.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,8 +3,8 @@
 #include "config.h"
 
 #include "camera/path_files.h"
-#include "io/atomic.h"
-#include "io/json.h"
+#include "system/atomic.h"
+#include "system/json.h"
 
 /** Camera-to-world in OpenGL axes, row by row. */
 static void write_matrix(adcgs_json *json, const double pose[12])

@@ -5,7 +5,7 @@
 #include "camera/pivot.h"
 
 #include "base/base.h"
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 
 #include <adcgs/decoder.h>
 

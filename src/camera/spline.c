@@ -4,7 +4,7 @@
 
 #include "camera/spline.h"
 
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 
 #include "camera/usda.h"
 
-#include "io/file.h"
+#include "system/file.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -5,8 +5,9 @@
 #include "cli/cli.h"
 
 #include "cli/completion.h"
-#include "cli/flush.h"
-#include "cli/text.h"
+#include "system/flush.h"
+#include "system/numbers.h"
+#include "system/text.h"
 
 #include <adcgs/version.h>
 

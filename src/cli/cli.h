@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Command line of all programs: a table of options that parses itself and
- * prints its own help, numbers with ranges, messages, progress, the interrupt
- * flag.
+ * prints its own help, messages, progress.
  */
 #ifndef ADCGS_CLI_CLI_H
 #define ADCGS_CLI_CLI_H
@@ -75,7 +74,7 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first);
 /** 0 success, 1 a defect of ours, 2 usage, 3 input/output or memory, 4 invalid data, 5 unsupported. */
 int adcgs_exit_code(adcgs_status status);
 
-/* Each message has one line: control characters in its names and texts are escaped (cli/text.h). */
+/* Each message has one line: control characters in its names and texts are escaped (system/text.h). */
 /** Print "program: text" on stderr and return the exit code of error->status. */
 int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error);
 /**
@@ -93,30 +92,6 @@ int adcgs_cli_leave(const adcgs_cli *cli, int code);
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...) ADCGS_PRINTF(2, 3);
 /** A pool of threads, 0: one per processor. Prints a note if the system starts fewer. */
 adcgs_status adcgs_cli_pool(const adcgs_cli *cli, adcgs_pool **out, int threads, adcgs_error *error);
-
-/* Parsers of whole strings: 0, or -1 if text is not exactly one number of the kind within [min, max]. */
-int adcgs_parse_int(const char *text, int min, int max, int *out);
-/** The same, also accepting thousands (20k, 1.5k) and millions (2M) that are whole numbers. */
-int adcgs_parse_count(const char *text, int min, int max, int *out);
-/** Seconds, or with a unit: 500ms, 2s, 10m or 10min, 1.5h. */
-int adcgs_parse_seconds(const char *text, double min, double max, double *out);
-/**
- * Digits. With a suffix (k, M, G, or Ki, Mi, Gi, each also followed by B) a decimal fraction is allowed and rounded down: 1.5M.
- */
-int adcgs_parse_size(const char *text, uint64_t min, uint64_t max, uint64_t *out);
-int adcgs_parse_real(const char *text, double min, double max, double *out);
-int adcgs_parse_pair(const char *text, int min, int max, int out[2]);
-/** "T" or "A:B" in the form of adcgs_parse_seconds(); *end == *begin for the former. */
-int adcgs_parse_times(const char *text, double *begin, double *end);
-
-/** Let the first `most` of the signals SIGINT, SIGTERM and SIGHUP (if not ignored) set a flag; the next one kills. */
-void adcgs_interrupt_catch(int most);
-/** Let one of these signals print a line on standard error before it kills. text must stay valid. */
-void adcgs_interrupt_word(const char *text);
-/** The last signal, 0 if none. */
-int adcgs_interrupted(void);
-/** Number of signals received. */
-int adcgs_interrupts(void);
 
 /** Progress of a program: on a terminal a line that rewrites itself, else an occasional remark. */
 typedef struct adcgs_progress {

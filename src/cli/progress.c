@@ -7,7 +7,7 @@
 
 #include "cli/cli.h"
 
-#include "cli/text.h"
+#include "system/text.h"
 
 #include <errno.h>
 #include <math.h>

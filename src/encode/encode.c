@@ -8,7 +8,7 @@
 #include "model/model_priv.h"
 #include "render/render.h"
 #include "stream/input.h"
-#include "train/levels.h"
+#include "train/rate/levels.h"
 #include "train/scene_frame.h"
 
 #include <math.h>

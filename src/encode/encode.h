@@ -6,7 +6,7 @@
 #ifndef ADCGS_ENCODE_ENCODE_H
 #define ADCGS_ENCODE_ENCODE_H
 
-#include "data/part.h"
+#include "scene/part.h"
 #include "stream/stream.h"
 #include "train/trainer.h"
 

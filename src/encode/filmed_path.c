@@ -4,8 +4,8 @@
 
 #include "encode/filmed_path.h"
 
-#include "camera/rotation.h"
 #include "camera/spline.h"
+#include "geometry/rotation.h"
 
 #include <math.h>
 

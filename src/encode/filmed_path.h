@@ -7,7 +7,7 @@
 #define ADCGS_ENCODE_FILMED_PATH_H
 
 #include "camera/path.h"
-#include "data/scene.h"
+#include "scene/scene.h"
 
 typedef struct adcgs_filmed_path {
     int n;                  /**< keys; 0: the poses do not lie on a smooth path */

@@ -4,9 +4,9 @@
 
 #include "encode/stored_cameras.h"
 
-#include "data/camera_order.h"
-#include "data/group_views.h"
 #include "encode/filmed_path.h"
+#include "scene/camera_order.h"
+#include "scene/group_views.h"
 
 #include <math.h>
 #include <stdlib.h>

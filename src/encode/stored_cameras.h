@@ -3,7 +3,7 @@
 #ifndef ADCGS_ENCODE_STORED_CAMERAS_H
 #define ADCGS_ENCODE_STORED_CAMERAS_H
 
-#include "data/scene.h"
+#include "scene/scene.h"
 #include "stream/stream.h"
 
 #define ADCGS_STORED_CAMERAS_MAX 8 /**< cameras without a path */

@@ -2,7 +2,7 @@
 /** \file Rigid bodies: poses, their gradients, and their centres of rotation. */
 #include "fmodel/body_trajectories.h"
 
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 
 #include <math.h>
 

@@ -68,7 +68,7 @@ typedef struct adcgs_fmodel {
     float *trainable;       /**< [group][64] 0: the anchor is frozen, with the values of the previous segment; 1: trained */
     int follows;            /**< 1: continues the model of the previous segment, see from_model.h */
     uint8_t *body;          /**< [group][64] rigid body of the anchor while it moves, from 1; 0: none */
-    uint8_t *tier;          /**< [group][64] tier of the anchor; see train/tier_assignment.h */
+    uint8_t *tier;          /**< [group][64] tier of the anchor; see train/rate/tier_assignment.h */
     uint8_t finest, growth[ADCGS_TIERS_MAX - 1]; /**< as in adcgs_model */
     float centre[ADCGS_BODIES_MAX][3];           /**< centres of rotation of the bodies; see body_trajectories.h */
     adcgs_param param[ADCGS_P_COUNT];

@@ -4,8 +4,8 @@
 
 #include "metric/crop.h"
 
-#include "data/sort_values.h"
 #include "metric/metric.h"
+#include "system/sort_values.h"
 
 #include <math.h>
 #include <stdlib.h>

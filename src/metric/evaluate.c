@@ -3,10 +3,10 @@
 #include "metric/evaluate.h"
 
 #include "camera/path.h"
-#include "data/group_views.h"
-#include "data/sort_values.h"
 #include "metric/metric.h"
 #include "metric/moving.h"
+#include "scene/group_views.h"
+#include "system/sort_values.h"
 
 #include <adcgs/decoder.h>
 #include <adcgs/frame.h>

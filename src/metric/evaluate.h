@@ -6,8 +6,8 @@
 #ifndef ADCGS_METRIC_EVALUATE_H
 #define ADCGS_METRIC_EVALUATE_H
 
-#include "data/scene.h"
 #include "metric/temporal.h"
+#include "scene/scene.h"
 
 #include <adcgs/types.h>
 

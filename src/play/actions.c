@@ -4,8 +4,8 @@
 
 #include "play/actions.h"
 
-#include "cli/text.h"
 #include "play/by_hand.h"
+#include "system/text.h"
 
 #include <stdarg.h>
 #include <stdio.h>

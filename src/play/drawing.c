@@ -4,7 +4,7 @@
 
 #include "play/drawing.h"
 
-#include "cli/text.h"
+#include "system/text.h"
 
 #include <math.h>
 #include <stdio.h>

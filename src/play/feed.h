@@ -6,7 +6,7 @@
 #ifndef ADCGS_PLAY_FEED_H
 #define ADCGS_PLAY_FEED_H
 
-#include "io/incoming.h"
+#include "net/incoming.h"
 
 typedef struct adcgs_feed adcgs_feed;
 

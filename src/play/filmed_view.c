@@ -5,7 +5,7 @@
 #include "play/filmed_view.h"
 
 #include "base/base.h"
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 
 #include <math.h>
 

@@ -11,7 +11,7 @@
 #ifdef HAVE_TTF
 
 #include "base/base.h"
-#include "cli/text.h"
+#include "system/text.h"
 
 #include <SDL_ttf.h>
 #include <fontconfig/fontconfig.h>

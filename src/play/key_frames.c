@@ -4,7 +4,7 @@
 
 #include "play/key_frames.h"
 
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 #include "play/files.h"
 
 #include <stdio.h>

@@ -4,12 +4,12 @@
 
 #include "play/overlay.h"
 
-#include "cli/text.h"
 #include "play/by_hand.h"
 #include "play/control_bar.h"
 #include "play/controls.h"
 #include "play/help_page.h"
 #include "play/overlay_colours.h"
+#include "system/text.h"
 
 #include <stdio.h>
 

@@ -2,12 +2,12 @@
 /** \file The player's loop: takes events and reacts to them. */
 #include "config.h"
 
-#include "play/actions.h"
 #include "cli/cli.h"
-#include "cli/text.h"
+#include "play/actions.h"
 #include "play/files.h"
 #include "play/player.h"
 #include "play/script_run.h"
+#include "system/text.h"
 
 #include <stdlib.h>
 

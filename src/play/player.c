@@ -4,7 +4,7 @@
 
 #include "play/player.h"
 
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 #include "play/actions.h"
 #include "play/by_hand.h"
 

@@ -6,7 +6,7 @@
 #ifndef ADCGS_PLAY_RECORDING_H
 #define ADCGS_PLAY_RECORDING_H
 
-#include "io/sink.h"
+#include "media/sink.h"
 
 #include <limits.h>
 

@@ -4,8 +4,8 @@
 
 #include "play/script.h"
 
-#include "io/file.h"
 #include "play/play_state.h"
+#include "system/file.h"
 
 #include <math.h>
 #include <stdlib.h>

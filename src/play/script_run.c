@@ -4,7 +4,7 @@
 
 #include "play/script_run.h"
 
-#include "io/image.h"
+#include "media/image/image.h"
 #include "play/by_hand.h"
 #include "play/controls.h"
 

@@ -7,9 +7,9 @@
 #ifndef ADCGS_PLAY_WINDOW_H
 #define ADCGS_PLAY_WINDOW_H
 
-#include "io/module.h"
 #include "play/drawing.h"
 #include "play/event.h"
+#include "system/module.h"
 
 typedef struct adcgs_window adcgs_window;
 

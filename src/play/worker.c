@@ -5,7 +5,7 @@
 #include "play/worker.h"
 
 #include "camera/pivot.h"
-#include "io/image.h"
+#include "media/image/image.h"
 
 #include <adcgs/decoder.h>
 #include <adcgs/frame.h>

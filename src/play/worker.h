@@ -7,7 +7,7 @@
 #ifndef ADCGS_PLAY_WORKER_H
 #define ADCGS_PLAY_WORKER_H
 
-#include "io/sink.h"
+#include "media/sink.h"
 #include "play/intake.h"
 
 #include <limits.h>

@@ -3,7 +3,7 @@
 #ifndef ADCGS_TRAIN_ANCHOR_PLAN_H
 #define ADCGS_TRAIN_ANCHOR_PLAN_H
 
-#include "data/scene.h"
+#include "scene/scene.h"
 #include "train/train_config.h"
 
 /**

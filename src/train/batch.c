@@ -2,7 +2,7 @@
 /** \file The views of an iteration. */
 #include "train/batch.h"
 
-#include "train/share.h"
+#include "train/team/share.h"
 #include "train/view_pass.h"
 
 /* ---- Sums: all gradients, followed by the statistics ---- */

@@ -6,7 +6,7 @@
 #ifndef ADCGS_TRAIN_BATCH_H
 #define ADCGS_TRAIN_BATCH_H
 
-#include "train/state.h"
+#include "train/state/state.h"
 
 /**
  * Runs an iteration's view passes. f->param[].g receives the mean gradients, the statistics are updated, and

@@ -2,8 +2,8 @@
 /** \file Matching of bodies with those of the previous segment. */
 #include "train/continue_bodies.h"
 
-#include "camera/rotation.h"
 #include "fmodel/body_trajectories.h"
+#include "geometry/rotation.h"
 
 #include <math.h>
 

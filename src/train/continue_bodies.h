@@ -8,7 +8,7 @@
 #define ADCGS_TRAIN_CONTINUE_BODIES_H
 
 #include "fmodel/fmodel.h"
-#include "stereo/stereo.h"
+#include "init/stereo.h"
 
 /**
  * Gives found bodies the numbers of the model's bodies. The model's time table starts at the end of the previous segment. The

@@ -7,7 +7,7 @@
 #define ADCGS_TRAIN_CONTINUE_SEGMENT_H
 
 #include "fmodel/fmodel.h"
-#include "stereo/stereo.h"
+#include "init/stereo.h"
 #include "train/train_config.h"
 
 /**

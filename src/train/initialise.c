@@ -4,8 +4,8 @@
 
 #include "fmodel/body_trajectories.h"
 #include "geom/geom.h"
-#include "stereo/body_pose.h"
-#include "train/spacing.h"
+#include "init/rigid/body_pose.h"
+#include "train/density/spacing.h"
 #include "train/start_points.h"
 
 #include <math.h>

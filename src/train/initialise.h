@@ -3,8 +3,8 @@
 #ifndef ADCGS_TRAIN_INITIALISE_H
 #define ADCGS_TRAIN_INITIALISE_H
 
-#include "data/scene.h"
-#include "stereo/stereo.h"
+#include "init/stereo.h"
+#include "scene/scene.h"
 #include "train/schedule.h"
 
 /**

@@ -2,10 +2,10 @@
 /** \file Coordinate system of the scene. */
 #include "train/scene_frame.h"
 
-#include "camera/rotation.h"
-#include "data/extent.h"
-#include "data/sort_values.h"
-#include "io/median.h"
+#include "geometry/rotation.h"
+#include "scene/extent.h"
+#include "system/median.h"
+#include "system/sort_values.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 #ifndef ADCGS_TRAIN_SCENE_FRAME_H
 #define ADCGS_TRAIN_SCENE_FRAME_H
 
-#include "data/scene.h"
+#include "scene/scene.h"
 
 /**
  * Scene units: the origin is the focus of the training cameras, and their median distance from it is 1. The focus is the point

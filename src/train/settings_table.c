@@ -7,9 +7,9 @@
  */
 #include "train/settings.h"
 
+#include "init/stereo.h"
 #include "net/net.h"
-#include "stereo/stereo.h"
-#include "train/tree_sum.h"
+#include "train/team/tree_sum.h"
 
 #include <stddef.h>
 

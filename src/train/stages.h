@@ -3,7 +3,7 @@
 #ifndef ADCGS_TRAIN_STAGES_H
 #define ADCGS_TRAIN_STAGES_H
 
-#include "train/state.h"
+#include "train/state/state.h"
 
 /** Called before an iteration at this progress: image size, curriculum, growth, stages, rate control. */
 adcgs_status adcgs_stages_before(adcgs_trainer *trainer, double progress, adcgs_error *error);

@@ -3,10 +3,10 @@
 #include "train/start_points.h"
 
 #include "grad/random.h"
-#include "stereo/body_pose.h"
-#include "stereo/motion_check.h"
+#include "init/motion_check.h"
+#include "init/rigid/body_pose.h"
+#include "train/density/visibility.h"
 #include "train/scene_frame.h"
-#include "train/visibility.h"
 
 #include <math.h>
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Initial points of anchors: the scene's points, with moving points from matching (stereo/stereo.h). A scene without points uses
+ * Initial points of anchors: the scene's points, with moving points from matching (init/stereo.h). A scene without points uses
  * all matched points, and random points in the cameras' common volume where matching found nothing. Only training views are used.
  */
 #ifndef ADCGS_TRAIN_START_POINTS_H
 #define ADCGS_TRAIN_START_POINTS_H
 
-#include "stereo/stereo.h"
+#include "init/stereo.h"
 #include "train/train_config.h"
 
 /** Minimum number of points that count as a scene's points. */

@@ -3,7 +3,7 @@
 #ifndef ADCGS_TRAIN_STEP_H
 #define ADCGS_TRAIN_STEP_H
 
-#include "train/state.h"
+#include "train/state/state.h"
 
 adcgs_status adcgs_train_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
 

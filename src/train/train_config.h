@@ -79,7 +79,7 @@ typedef struct adcgs_train_config {
     uint8_t without_rounding;           /**< values and weights stay binary32, for a model that is stored uncompressed */
     uint8_t bf16;                       /**< rendering networks are trained in bf16; see adcgs_bf16_check() */
     uint8_t retime_duplicates;          /**< a duplicated image gets the timestamp of its content */
-    uint8_t exposure_step_compensation; /**< steps of light are corrected (data/light.h) by the caller that opens the scene */
+    uint8_t exposure_step_compensation; /**< steps of light are corrected (check/light.h) by the caller that opens the scene */
     float trial_share;                  /**< iterations of a trial (trial.h), relative to the run; fewer than 100: no trials */
     uint8_t gains;                      /**< cameras, and images of a static scene, have a gain each in training (exposure.h) */
     uint8_t black_levels;               /**< cameras have a black level each in training (black_level.h) */

@@ -5,7 +5,7 @@
 #include "camera/path.h"
 #include "grad/random.h"
 #include "render/render.h"
-#include "train/retime_duplicates.h"
+#include "train/static/retime_duplicates.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 #ifndef ADCGS_TRAIN_TRAIN_VIEWS_H
 #define ADCGS_TRAIN_TRAIN_VIEWS_H
 
-#include "train/state.h"
+#include "train/state/state.h"
 
 /** (Re)loads all training views with their size divided by an integer. */
 adcgs_status adcgs_trainer_load_views(adcgs_trainer *trainer, int divide, adcgs_error *error);

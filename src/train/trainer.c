@@ -4,7 +4,7 @@
 
 #include "base/digest.h"
 #include "metric/metric.h"
-#include "train/rate_search.h"
+#include "train/rate/rate_search.h"
 #include "train/stages.h"
 #include "train/step.h"
 

@@ -6,8 +6,8 @@
 #ifndef ADCGS_TRAIN_TRAINER_H
 #define ADCGS_TRAIN_TRAINER_H
 
-#include "train/checkpoint.h"
-#include "train/state.h"
+#include "train/state/checkpoint.h"
+#include "train/state/state.h"
 
 /** Report to an observer. Bits are estimates until the stream is written. */
 typedef struct adcgs_train_report {

@@ -3,7 +3,7 @@
 #include "train/view_pass.h"
 
 #include "grad/random.h"
-#include "train/tier_assignment.h"
+#include "train/rate/tier_assignment.h"
 #include "train/train_views.h"
 
 /* Of the run: earlier renders are too inaccurate for gains. */

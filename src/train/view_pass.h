@@ -3,7 +3,7 @@
 #ifndef ADCGS_TRAIN_VIEW_PASS_H
 #define ADCGS_TRAIN_VIEW_PASS_H
 
-#include "train/state.h"
+#include "train/state/state.h"
 
 /** True if the rate is part of the loss. */
 int adcgs_view_pass_has_rate(const adcgs_trainer *trainer, double progress);

@@ -14,10 +14,11 @@
 #include "config.h"
 
 #include "cli/cli.h"
-#include "data/splat_views.h"
-#include "io/json.h"
-#include "layouts/open.h"
 #include "metric/metric.h"
+#include "scene/layouts/open.h"
+#include "scene/splat_views.h"
+#include "system/json.h"
+#include "system/numbers.h"
 
 #include <errno.h>
 #include <math.h>

@@ -27,7 +27,7 @@
 #include <draco/point_cloud/point_cloud_builder.h>
 
 extern "C" {
-#include "io/splats.h"
+#include "media/splats/splats.h"
 }
 
 namespace

@@ -6,10 +6,10 @@
  */
 #include "config.h"
 
-#include "data/group_views.h"
 #include "grad/raster.h"
-#include "layouts/open.h"
 #include "metric/temporal.h"
+#include "scene/group_views.h"
+#include "scene/layouts/open.h"
 #include "splat/splat.h"
 #include "stream/input.h"
 #include "stream/stream.h"

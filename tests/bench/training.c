@@ -3,8 +3,8 @@
 #include "bench_parts.h"
 
 #include "encode/encode.h"
-#include "layouts/open.h"
-#include "scenes/scenes.h"
+#include "scene/layouts/open.h"
+#include "synthetic/scenes.h"
 #include "train/settings.h"
 #include "train/trainer.h"
 

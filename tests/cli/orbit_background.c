@@ -9,7 +9,7 @@
 #include "camera/follow.h"
 #include "camera/orbit_control.h"
 #include "camera/pivot.h"
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 
 #include <adcgs/decoder.h>
 

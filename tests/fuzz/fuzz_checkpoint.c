@@ -10,8 +10,8 @@
 #include "outside_file.h"
 
 #include "encode/encode.h"
-#include "layouts/open.h"
-#include "scenes/scenes.h"
+#include "scene/layouts/open.h"
+#include "synthetic/scenes.h"
 #include "train/settings.h"
 #include "train/trainer.h"
 

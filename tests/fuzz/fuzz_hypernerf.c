@@ -7,7 +7,7 @@
 
 #include "outside_file.h"
 
-#include "layouts/hypernerf.h"
+#include "scene/layouts/hypernerf.h"
 
 #include <sys/stat.h>
 

@@ -9,8 +9,8 @@
 
 #include "outside_file.h"
 
-#include "data/scene.h"
-#include "layouts/open.h"
+#include "scene/layouts/open.h"
+#include "scene/scene.h"
 
 #include <sys/stat.h>
 

@@ -6,7 +6,7 @@
 
 #include "outside_file.h"
 
-#include "layouts/live_camera.h"
+#include "scene/live/live_camera.h"
 
 #include <math.h>
 

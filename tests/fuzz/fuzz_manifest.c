@@ -4,7 +4,7 @@
 
 #include "outside_file.h"
 
-#include "conform/conform.h"
+#include "apps/conform/conform.h"
 
 const char *const adcgs_fuzz_seeds[] = {"conformance/manifest.json", "tests/fuzz/regressions/manifest", NULL};
 

@@ -7,8 +7,8 @@
 
 #include "outside_file.h"
 
-#include "encode/live_stream.h"
-#include "encode/resume_reader.h"
+#include "session/live_stream.h"
+#include "session/resume_reader.h"
 
 const char *const adcgs_fuzz_seeds[] = {"conformance/vectors", "tests/fuzz/regressions/past", NULL};
 

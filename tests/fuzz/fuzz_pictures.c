@@ -7,8 +7,8 @@
 
 #include "outside_file.h"
 
-#include "io/image.h"
-#include "io/points.h"
+#include "media/image/image.h"
+#include "media/points/points.h"
 
 #include <math.h>
 

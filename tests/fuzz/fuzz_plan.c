@@ -4,7 +4,7 @@
 
 #include "outside_file.h"
 
-#include "encode/plan.h"
+#include "session/plan.h"
 
 const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/plan", NULL};
 

@@ -2,7 +2,7 @@
 /** \file Untrusted PLY files. */
 #include "fuzz.h"
 
-#include "io/points.h"
+#include "media/points/points.h"
 
 const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/ply", "tests/fuzz/regressions/ply", NULL};
 

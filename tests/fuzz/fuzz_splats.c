@@ -2,7 +2,7 @@
 /** \file Untrusted PLY files of splats. */
 #include "fuzz.h"
 
-#include "io/splats.h"
+#include "media/splats/splats.h"
 
 #include <math.h>
 

@@ -9,18 +9,18 @@
 
 #include "outside_file.h"
 
+#include "apps/dec/dec_budget.h"
+#include "apps/shared/answer.h"
+#include "apps/sweep/sweep.h"
 #include "camera/path.h"
-#include "data/frames.h"
-#include "io/fps.h"
-#include "io/http_head.h"
-#include "io/page_stream.h"
-#include "io/y4m_shape.h"
-#include "layouts/scene_file.h"
+#include "media/page_stream.h"
+#include "media/video/fps.h"
+#include "media/video/y4m_shape.h"
+#include "net/http_head.h"
 #include "play/script.h"
-#include "scenes/spoil.h"
-#include "sweep/sweep.h"
-#include "tools/answer.h"
-#include "tools/dec_budget.h"
+#include "scene/frames.h"
+#include "scene/layouts/scene_file.h"
+#include "synthetic/spoil.h"
 #include "train/settings.h"
 
 #include <math.h>

@@ -4,8 +4,8 @@
 
 #include "outside_file.h"
 
-#include "layouts/transforms.h"
-#include "layouts/transforms_check.h"
+#include "scene/layouts/transforms.h"
+#include "scene/layouts/transforms_check.h"
 
 #define PICTURE "P5\n24 16\n255\n" /* followed by as many pixels, all black */
 

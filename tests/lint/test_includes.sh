@@ -1,34 +1,46 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The folders have an order: each includes itself and earlier folders. codec/ never includes src/. Each file has a base name of its own.
+# The rooms have an order: each includes itself and earlier rooms. A folder inside a room belongs to it; each program in src/apps is
+# a room. codec/ never includes src/. Each file has a base name of its own.
 set -u
 cd "${srcdir:-.}" || exit 99
 faults=0
 
-# check TOP BEFORE ROOM...: includes in TOP/ROOM may name earlier folders of the list, or those in BEFORE.
+# room_of PATH: the room of an included file.
+room_of()
+{
+    case $1 in
+        apps/*/*) local rest=${1#apps/} && echo "apps/${rest%%/*}" ;;
+        */*) echo "${1%%/*}" ;;
+    esac
+}
+
+# check TOP BEFORE ROOM...: includes in TOP/ROOM may name earlier rooms of the list, or those in BEFORE.
 check()
 {
     local top=$1 allowed=" $2 " room file line target
     shift 2
     for room in "$@"; do
         allowed+="$room "
-        [ -d "$top/$room" ] || continue
+        [ -d "$top/$room" ] || { echo "$top/$room: no such room" >&2; faults=$((faults + 1)); continue; }
         while IFS=: read -r file line target; do
             case $target in
                 config.h) continue ;;
             esac
-            if [[ $target != */* || $allowed != *" ${target%%/*} "* ]]; then
+            if [[ $target != */* || $allowed != *" $(room_of "$target") "* ]]; then
                 echo "$file:$line: a file of $top/$room includes \"$target\"" >&2
                 faults=$((faults + 1))
             fi
-        done < <(grep -nH '^ *# *include *"' "$top/$room"/*.[ch] "$top/$room"/*.cc 2>/dev/null |
+        done < <(find "$top/$room" -name '*.[ch]' -o -name '*.cc' | sort | xargs grep -nH '^ *# *include *"' |
                      sed 's/^\([^:]*:[0-9]*\):[^"]*"\([^"]*\)".*/\1:\2/')
     done
 }
 
 codec="base bits geom net model splat render stream api"
 check codec "" $codec
-check src "$codec" cli io data camera layouts metric scenes grad fmodel stereo train encode play sweep conform import tools
+# The command line comes late: libraries neither print nor parse.
+check src "$codec" system geometry net media scene camera metric synthetic grad fmodel init check train encode cli session play \
+    apps/shared apps/adcgs apps/conform apps/dec apps/demo apps/enc apps/eval apps/import apps/info apps/join apps/share apps/sweep
 
 # Only codec/api uses the installed headers decoder.h, frame.h and adcgs.h. The folders below it use those of types, and of the
 # interface of base.
@@ -42,6 +54,13 @@ if grep -n '^ *# *include <adcgs/' codec/include/adcgs/{status,types,version,cpu
     echo "a basic installed header includes more than types.h and status.h" >&2
     faults=$((faults + 1))
 fi
+
+# The list of a room begins with its contract.
+for list in src/*/Makefile.inc; do
+    [ "$(sed -n '2,4s/: .*//p' "$list" | tr -d '\n')" = '# In# Out# Never' ] && continue
+    echo "$list: lines 2 to 4 do not state In, Out, Never" >&2
+    faults=$((faults + 1))
+done
 
 # A base name, as in a backtrace or a message, means one file.
 repeated=$(find codec src conformance web tests examples -name '*.[ch]' -o -name '*.cc' | sed 's|.*/||' | sort | uniq -d)

@@ -4,7 +4,7 @@
 
 #include "second_sources.h"
 
-#include "io/json.h"
+#include "system/json.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

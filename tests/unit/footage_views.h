@@ -3,7 +3,7 @@
 #ifndef ADCGS_TESTS_FOOTAGE_VIEWS_H
 #define ADCGS_TESTS_FOOTAGE_VIEWS_H
 
-#include "data/faults.h"
+#include "check/faults.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -5,8 +5,8 @@
 
 #include "outside_files.h"
 
-#include "data/scene.h"
-#include "layouts/open.h"
+#include "scene/layouts/open.h"
+#include "scene/scene.h"
 
 static adcgs_scene *scene;
 

@@ -3,8 +3,8 @@
 #include "hypernerf_files.h"
 #include "second_sources.h"
 
-#include "data/scene.h"
-#include "layouts/open.h"
+#include "scene/layouts/open.h"
+#include "scene/scene.h"
 
 #include <jansson.h>
 #include <math.h>

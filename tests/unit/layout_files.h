@@ -8,8 +8,8 @@
 
 #include "outside_files.h"
 
-#include "data/scene.h"
-#include "io/video.h"
+#include "media/video/video.h"
+#include "scene/scene.h"
 
 #include <math.h>
 

@@ -3,9 +3,9 @@
 #include "lens_reference.h"
 #include "second_sources.h"
 
-#include "data/lens_model.h"
-#include "data/scene.h"
-#include "layouts/open.h"
+#include "scene/layouts/open.h"
+#include "scene/lens_model.h"
+#include "scene/scene.h"
 
 #include <jansson.h>
 #include <math.h>

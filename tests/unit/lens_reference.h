@@ -5,7 +5,7 @@
 
 #include "outside_files.h"
 
-#include "data/lens_model.h"
+#include "scene/lens_model.h"
 
 #include <math.h>
 

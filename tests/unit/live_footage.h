@@ -3,8 +3,8 @@
 #ifndef ADCGS_TESTS_LIVE_FOOTAGE_H
 #define ADCGS_TESTS_LIVE_FOOTAGE_H
 
-#include "io/image.h"
-#include "layouts/live_scene.h"
+#include "media/image/image.h"
+#include "scene/live/live_scene.h"
 
 #include <adcgs/adcgs.h>
 

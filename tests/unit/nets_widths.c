@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Narrower networks: units without effect or worth go, and the others compute the same. */
-#include "weight_runs.h"
 #include "second_sources.h"
+#include "weight_runs.h"
 
 #include "encode/encode.h"
-#include "train/unit_prune.h"
+#include "train/static/unit_prune.h"
 
 #include <math.h>
 

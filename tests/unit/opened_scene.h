@@ -5,7 +5,7 @@
 
 #include "outside_files.h"
 
-#include "layouts/open.h"
+#include "scene/layouts/open.h"
 
 static adcgs_scene *scene;
 

@@ -6,7 +6,7 @@
 #include "outside_files.h"
 
 #include "camera/orbit_control.h"
-#include "camera/vector.h"
+#include "geometry/vector.h"
 #include "play/play_state.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 
 #include "random_splats.h"
 
-#include "io/splats.h"
+#include "media/splats/splats.h"
 
 #include <adcgs/adcgs.h>
 

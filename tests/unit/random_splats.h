@@ -6,8 +6,8 @@
 #include "outside_files.h"
 #include "random_model.h"
 
-#include "io/file.h"
-#include "io/splats.h"
+#include "media/splats/splats.h"
+#include "system/file.h"
 
 #include <math.h>
 

@@ -3,9 +3,9 @@
 #include "scene_files.h"
 #include "second_sources.h"
 
-#include "data/pose_check.h"
-#include "data/scene.h"
-#include "layouts/open.h"
+#include "scene/layouts/open.h"
+#include "scene/pose_check.h"
+#include "scene/scene.h"
 
 #include <math.h>
 

@@ -5,8 +5,8 @@
 
 #include "outside_files.h"
 
-#include "data/scene.h"
-#include "layouts/open.h"
+#include "scene/layouts/open.h"
+#include "scene/scene.h"
 
 #define IDENTITY "[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]"
 #define FRAME(path, more) "{\"file_path\":\"" path "\",\"transform_matrix\":" IDENTITY more "}"

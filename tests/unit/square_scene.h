@@ -5,9 +5,9 @@
 
 #include "outside_files.h"
 
-#include "data/scene.h"
 #include "grad/random.h"
-#include "io/image.h"
+#include "media/image/image.h"
+#include "scene/scene.h"
 
 #include <math.h>
 

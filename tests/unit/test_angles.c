@@ -2,7 +2,7 @@
 /** \file Triangulation angles of points in a sparse model. */
 #include "outside_files.h"
 
-#include "layouts/colmap_model.h"
+#include "scene/layouts/colmap_model.h"
 
 #include <math.h>
 

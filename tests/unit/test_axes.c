@@ -7,7 +7,7 @@
 
 #include "ball.h"
 
-#include "stereo/axes.h"
+#include "check/axes.h"
 
 #include <math.h>
 

@@ -5,11 +5,11 @@
  */
 #include "outside_files.h"
 
-#include "data/scene.h"
 #include "grad/random.h"
-#include "io/image.h"
+#include "init/stereo.h"
+#include "media/image/image.h"
 #include "model/model.h"
-#include "stereo/stereo.h"
+#include "scene/scene.h"
 
 #include <math.h>
 

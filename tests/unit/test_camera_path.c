@@ -2,8 +2,8 @@
 /** \file Camera paths: flights through key frames, paths around the stored cameras, valid and invalid path files. */
 #include "outside_files.h"
 
-#include "camera/rotation.h"
 #include "camera/spline.h"
+#include "geometry/rotation.h"
 
 #include <math.h>
 

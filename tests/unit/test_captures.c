@@ -2,13 +2,13 @@
 /** \file Scenes as other users film them: camera places, alpha, exposures, shapes. */
 #define _POSIX_C_SOURCE 200809L
 
-#include "io/image.h"
-#include "scenes/scene_views.h"
-#include "scenes/scenes.h"
-#include "scenes/shapes.h"
-#include "scenes/texture.h"
+#include "media/image/image.h"
+#include "synthetic/scene_views.h"
+#include "synthetic/scenes.h"
+#include "synthetic/shapes.h"
+#include "synthetic/texture.h"
 
-#include "camera/vector.h"
+#include "geometry/vector.h"
 
 #include <math.h>
 #include <setjmp.h>

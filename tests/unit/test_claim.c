@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Claims: the owner is determined by processes where these can be queried, not by clocks, which may be wrong. */
-#define BEAT 1        /* second */
-#include "io/claim.c" /* before any global name of the test can be shadowed */
+#define BEAT 1            /* second */
+#include "system/claim.c" /* before any global name of the test can be shadowed */
 
 #include "outside_files.h"
 

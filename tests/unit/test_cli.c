@@ -6,7 +6,8 @@
 
 #include "cli/cli.h"
 
-#include "cli/text.h"
+#include "system/numbers.h"
+#include "system/text.h"
 
 #include <getopt.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "config.h" /* for the declarations that it enables in system headers */
 
 #include "grad/random.h"
-#include "stereo/cloud.h"
+#include "init/cloud.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -5,8 +5,8 @@
  */
 #include "outside_files.h"
 
-#include "data/image_store.h"
-#include "layouts/open.h"
+#include "scene/image_store.h"
+#include "scene/layouts/open.h"
 
 #include <math.h>
 #include <openexr.h>

@@ -7,14 +7,14 @@
 
 #include "encode/encode.h"
 #include "encode/quantise.h"
-#include "camera/rotation.h"
 #include "fmodel/body_trajectories.h"
 #include "fmodel/from_model.h"
+#include "geometry/rotation.h"
 #include "model/inter.h"
 #include "train/continue_bodies.h"
-#include "train/unfreeze.h"
-#include "train/trainer.h"
+#include "train/density/unfreeze.h"
 #include "train/train_views.h"
+#include "train/trainer.h"
 
 static adcgs_train_config follow_config(void)
 {

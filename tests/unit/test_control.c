@@ -3,10 +3,10 @@
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
-#include "train/rate_control.h"
-#include "train/rate_plan.h"
-#include "train/rate_search.h"
-#include "train/sample.h"
+#include "train/density/sample.h"
+#include "train/rate/rate_control.h"
+#include "train/rate/rate_plan.h"
+#include "train/rate/rate_search.h"
 
 static adcgs_train_config config_for(adcgs_train_target target, double value)
 {

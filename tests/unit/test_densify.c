@@ -5,11 +5,11 @@
 #include "training_runs.h"
 
 #include "geom/geom.h"
-#include "train/prune_and_fix.h"
-#include "train/unchanging.h"
-#include "train/densify.h"
-#include "train/residual_densify.h"
+#include "train/density/densify.h"
+#include "train/density/residual_densify.h"
 #include "train/start_points.h"
+#include "train/static/prune_and_fix.h"
+#include "train/static/unchanging.h"
 #include "train/train_views.h"
 
 #include <math.h>

@@ -6,8 +6,8 @@
  */
 #include "config.h"
 
+#include "apps/shared/canvas.h"
 #include "random_model.h"
-#include "tools/canvas.h"
 #include "unit/pixels_reference.h"
 
 #include <adcgs/decoder.h>

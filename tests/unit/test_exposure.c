@@ -3,9 +3,9 @@
 #include "training_runs.h"
 
 #include "encode/encode.h"
-#include "train/black_level.h"
-#include "train/contrast.h"
-#include "train/sample.h"
+#include "train/density/sample.h"
+#include "train/exposure/black_level.h"
+#include "train/exposure/contrast.h"
 #include "train/train_views.h"
 
 #include <math.h>

@@ -5,8 +5,8 @@
  */
 #include "outside_files.h"
 
-#include "io/image.h"
-#include "io/sink.h"
+#include "media/image/image.h"
+#include "media/sink.h"
 
 #include <math.h>
 #include <openexr.h>

@@ -2,9 +2,9 @@
 /** \file Filmed paths: chosen by the encoder, followed by a view; the filmed region; requests for a pivot. */
 #include "play_rig.h"
 
-#include "camera/rotation.h"
 #include "encode/filmed_path.h"
 #include "encode/stored_cameras.h"
+#include "geometry/rotation.h"
 #include "play/by_hand.h"
 
 #include <math.h>

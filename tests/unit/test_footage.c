@@ -4,8 +4,8 @@
  */
 #include "footage_views.h"
 
-#include "data/faults.h"
-#include "train/retime_duplicates.h"
+#include "check/faults.h"
+#include "train/static/retime_duplicates.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,9 +2,9 @@
 /** \file The variants of PNG and JPEG through our readers: known values, and the results of OpenImageIO for the same files. */
 #include "outside_files.h"
 
-#include "io/image.h"
-#include "io/oiio_shim.h"
-#include "layouts/open.h"
+#include "media/image/image.h"
+#include "media/image/oiio_shim.h"
+#include "scene/layouts/open.h"
 
 #include <math.h>
 #include <sys/resource.h>

@@ -3,7 +3,7 @@
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
-#include "io/fps.h"
+#include "media/video/fps.h"
 
 #include <math.h>
 

@@ -3,8 +3,8 @@
 #include "glb_files.h"
 #include "second_sources.h"
 
-#include "io/harmonics.h"
-#include "io/splats_move.h"
+#include "media/splats/harmonics.h"
+#include "media/splats/splats_move.h"
 
 #include <math.h>
 

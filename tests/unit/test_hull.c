@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The visual hull of silhouettes: of a ball seen from all sides, and of views without evidence. */
-#include "stereo/hull.h"
+#include "init/hull.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,9 +2,9 @@
 /** \file Images in files: round trips of every format, damage, atomic writing, frame outputs. */
 #include "outside_files.h"
 
-#include "io/atomic.h"
-#include "io/image.h"
-#include "io/sink.h"
+#include "media/image/image.h"
+#include "media/sink.h"
+#include "system/atomic.h"
 
 #include <math.h>
 

@@ -2,8 +2,8 @@
 /** \file Images kept in memory and in a file: the same values for any budget. */
 #include "outside_files.h"
 
-#include "data/image_store.h"
-#include "layouts/open.h"
+#include "scene/image_store.h"
+#include "scene/layouts/open.h"
 
 #include <errno.h>
 #include <math.h>

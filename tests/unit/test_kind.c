@@ -2,9 +2,9 @@
 /** \file Kinds of files by their first bytes. Images are read by the reader of their kind, and no other file is opened. */
 #include "outside_files.h"
 
-#include "io/image.h"
-#include "io/kind.h"
-#include "layouts/open.h"
+#include "media/image/image.h"
+#include "media/kind.h"
+#include "scene/layouts/open.h"
 
 #include <math.h>
 #ifdef __linux__

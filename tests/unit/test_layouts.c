@@ -5,7 +5,7 @@
  */
 #include "layout_kinds.h"
 
-#include "layouts/open.h"
+#include "scene/layouts/open.h"
 #include "train/initialise.h"
 #include "train/scene_frame.h"
 #include "train/settings.h"

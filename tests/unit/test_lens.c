@@ -3,7 +3,7 @@
 #include "lens_reference.h"
 #include "second_sources.h"
 
-#include "data/lens_model.h"
+#include "scene/lens_model.h"
 
 #include <math.h>
 

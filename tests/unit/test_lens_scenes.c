@@ -2,10 +2,10 @@
 /** \file Scenes whose images have lens distortion: the fields of their files, and the images for training. */
 #include "outside_files.h"
 
-#include "data/content.h"
-#include "data/lens_model.h"
-#include "data/scene.h"
-#include "layouts/open.h"
+#include "scene/content.h"
+#include "scene/layouts/open.h"
+#include "scene/lens_model.h"
+#include "scene/scene.h"
 
 #include <math.h>
 

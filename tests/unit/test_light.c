@@ -2,8 +2,8 @@
 /** \file Faults of footage that appear in brightness: steps of light and their correction, clocks of cameras. */
 #include "footage_views.h"
 
-#include "data/faults.h"
-#include "data/light.h"
+#include "check/faults.h"
+#include "check/light.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -7,13 +7,13 @@
 #include "live_footage.h"
 #include "random_model.h"
 
-#include "encode/resume_reader.h"
 #include "encode/settle.h"
-#include "io/growing.h"
-#include "io/y4m_shape.h"
-#include "layouts/live_scene.h"
+#include "media/video/y4m_shape.h"
+#include "scene/live/live_scene.h"
+#include "session/resume_reader.h"
 #include "stream/grow.h"
 #include "stream/input.h"
+#include "system/growing.h"
 
 #include <adcgs/adcgs.h>
 

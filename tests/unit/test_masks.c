@@ -2,7 +2,7 @@
 /** \file Masks from other programs: in alpha, in colours, in both, of every depth. */
 #include "opened_scene.h"
 
-#include "data/mask.h"
+#include "scene/mask.h"
 
 #include <math.h>
 

@@ -2,9 +2,9 @@
 /** \file Missing light: lamps in the dark that a model does not have, seen by three cameras or by two of them. */
 #include "outside_files.h"
 
-#include "data/scene.h"
-#include "io/image.h"
-#include "train/residual_densify.h"
+#include "media/image/image.h"
+#include "scene/scene.h"
+#include "train/density/residual_densify.h"
 #include "train/settings.h"
 #include "train/train_views.h"
 #include "train/trainer.h"

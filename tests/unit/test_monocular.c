@@ -2,9 +2,9 @@
 /** \file Static and moving points of a monocular sequence, generated with known truth. */
 #include "outside_files.h"
 
-#include "layouts/open.h"
-#include "scenes/scenes.h"
-#include "stereo/stereo.h"
+#include "init/stereo.h"
+#include "scene/layouts/open.h"
+#include "synthetic/scenes.h"
 #include "train/scene_frame.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 /** \file Motion that lifetimes need: points that leave static surfaces, and in films fast ones that can be predicted. */
 #include "config.h"
 
-#include "stereo/motion_check.h"
+#include "init/motion_check.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,13 +2,13 @@
 /** \file Known motion: masks from the generator to the figures of a view. */
 #include "outside_files.h"
 
-#include "camera/rotation.h"
-#include "layouts/open.h"
+#include "geometry/rotation.h"
 #include "metric/evaluate.h"
 #include "metric/metric.h"
 #include "metric/moving.h"
-#include "scenes/scenes.h"
-#include "scenes/table.h"
+#include "scene/layouts/open.h"
+#include "synthetic/scenes.h"
+#include "synthetic/table.h"
 
 #include <adcgs/decoder.h>
 

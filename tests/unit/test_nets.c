@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The rate of the networks' weights and its gradient, the choice of lattices, weights that stay binary32. */
-#include "weight_runs.h"
 #include "second_sources.h"
+#include "weight_runs.h"
 
 #include "encode/encode.h"
 #include "fmodel/weight_rate.h"
-#include "train/sample.h"
-#include "train/weight_steps.h"
+#include "train/density/sample.h"
+#include "train/rate/weight_steps.h"
 
 #include <math.h>
 

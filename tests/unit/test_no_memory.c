@@ -6,9 +6,9 @@
 
 #include "encode/encode.h"
 #include "train/batch.h"
-#include "train/prune_and_fix.h"
 #include "train/stages.h"
-#include "train/unit_prune.h"
+#include "train/static/prune_and_fix.h"
+#include "train/static/unit_prune.h"
 
 #include <limits.h>
 #include <malloc.h>

@@ -2,8 +2,8 @@
 /** \file The stream in a page, at any position, longer than the list of stored positions. */
 #include "outside_files.h"
 
-#include "io/base64.h"
-#include "io/page_stream.h"
+#include "media/page_stream.h"
+#include "system/base64.h"
 
 #define PART 57000u /* whole lines */
 #define LONG_BYTES (900 * (size_t)PART + 4)

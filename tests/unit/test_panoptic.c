@@ -3,8 +3,8 @@
 #include "layout_files.h"
 #include "opened_scene.h"
 
-#include "io/npz.h"
-#include "io/zip.h"
+#include "media/arrays/npz.h"
+#include "system/zip.h"
 
 enum { T = 4, TRAIN = 3 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file A scene cut in time: the cuts, and the views of its parts. */
-#include "data/part.h"
+#include "scene/part.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,7 +4,7 @@
 
 #include "camera/euler.h"
 #include "camera/path_files.h"
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 
 #include <math.h>
 

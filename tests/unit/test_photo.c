@@ -2,7 +2,7 @@
 /** \file Photos made upright and smaller: the place of each pixel for each EXIF orientation, and that even areas stay even. */
 #include "outside_files.h"
 
-#include "io/photo.h"
+#include "media/image/photo.h"
 
 #include <math.h>
 

@@ -5,7 +5,7 @@
 #include "decoder_fixture.h"
 
 #include "camera/pivot.h"
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 #include "play_rig.h"
 
 #include "camera/orbit_control.h"
-#include "camera/rotation.h"
-#include "camera/vector.h"
+#include "geometry/rotation.h"
+#include "geometry/vector.h"
 #include "play/play_state.h"
 #include "play/scale.h"
 

@@ -3,7 +3,7 @@
 #include "outside_files.h"
 #include "second_sources.h"
 
-#include "io/points.h"
+#include "media/points/points.h"
 
 #include <math.h>
 

@@ -8,8 +8,8 @@
 
 #include "ball.h"
 
-#include "camera/vector.h"
-#include "stereo/pose_outlier.h"
+#include "geometry/vector.h"
+#include "init/pose_outlier.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

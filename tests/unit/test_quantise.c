@@ -11,8 +11,8 @@
 #include "metric/metric.h"
 #include "model/latents_priv.h"
 #include "splat/splat.h"
-#include "train/prune_and_fix.h"
-#include "train/sample.h"
+#include "train/density/sample.h"
+#include "train/static/prune_and_fix.h"
 
 #include <math.h>
 

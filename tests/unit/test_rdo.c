@@ -6,9 +6,9 @@
 #include "encode/quantise.h"
 #include "encode/rdo.h"
 #include "grad/random.h"
-#include "train/curvature.h"
-#include "train/levels.h"
-#include "train/sample.h"
+#include "train/density/sample.h"
+#include "train/rate/curvature.h"
+#include "train/rate/levels.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
-#include "train/contrast.h"
+#include "train/exposure/contrast.h"
 #include "train/schedule.h"
 #include "train/train_views.h"
 

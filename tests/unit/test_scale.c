@@ -4,11 +4,11 @@
  */
 #include "tiny_scene.h"
 
-#include "data/extent.h"
 #include "encode/encode.h"
-#include "layouts/open.h"
 #include "metric/evaluate.h"
 #include "metric/metric.h"
+#include "scene/extent.h"
+#include "scene/layouts/open.h"
 #include "train/scene_frame.h"
 
 #include <jansson.h>

@@ -2,7 +2,7 @@
 /** \file The adcgs scene file: every field, every kind of bad input, and a real calibration where available. */
 #include "layout_files.h"
 
-#include "layouts/open.h"
+#include "scene/layouts/open.h"
 
 #include <jansson.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The scene generator: its arithmetic, its independence of threads, and the properties that its table promises. */
-#include "scenes/scenes.h"
-#include "scenes/sine.h"
-#include "scenes/table.h"
+#include "synthetic/scenes.h"
+#include "synthetic/sine.h"
+#include "synthetic/table.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -5,7 +5,7 @@
 
 #ifdef HAVE_SOG
 
-#include "io/codebook.h"
+#include "media/splats/codebook.h"
 
 #include <jansson.h>
 #include <math.h>

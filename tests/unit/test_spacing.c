@@ -4,7 +4,7 @@
 
 #include "geom/geom.h"
 #include "grad/random.h"
-#include "train/spacing.h"
+#include "train/density/spacing.h"
 
 #include <math.h>
 #include <setjmp.h>

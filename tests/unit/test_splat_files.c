@@ -3,9 +3,9 @@
 #include "outside_files.h"
 #include "random_splats.h"
 
-#include "data/splat_views.h"
-#include "io/offset.h"
-#include "layouts/open.h"
+#include "media/splats/offset.h"
+#include "scene/layouts/open.h"
+#include "scene/splat_views.h"
 
 #define PROPERTIES                                                                                         \
     "property float x\nproperty float y\nproperty float z\nproperty float f_dc_0\nproperty float f_dc_1\n" \

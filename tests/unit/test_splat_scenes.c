@@ -2,10 +2,10 @@
 /** \file Splats as scenes: a decoder's splats written and read back, cameras for splats, view-dependent colours, real files. */
 #include "ply_splats.h"
 
-#include "io/splats.h"
-#include "layouts/open.h"
+#include "apps/info/info_points.h"
+#include "media/splats/splats.h"
 #include "render/render.h"
-#include "tools/info_points.h"
+#include "scene/layouts/open.h"
 
 #include <adcgs/adcgs.h>
 

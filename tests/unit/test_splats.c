@@ -2,8 +2,8 @@
 /** \file Splats in PLY: writing, reading and errors. */
 #include "ply_splats.h"
 
-#include "io/harmonics.h"
-#include "io/splats.h"
+#include "media/splats/harmonics.h"
+#include "media/splats/splats.h"
 
 #include <adcgs/adcgs.h>
 

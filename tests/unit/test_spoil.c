@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Synthetic faults of filmed scenes: the effect of each, that it has no other effect, and invalid options. */
-#include "scenes/spoil.h"
+#include "synthetic/spoil.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -4,7 +4,7 @@
  */
 #include "square_scene.h"
 
-#include "stereo/stereo.h"
+#include "init/stereo.h"
 
 static const adcgs_stereo_options options = {.scale = 1, .still = 800, .moving = 60, .judges = 1};
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Quality over time, against plain loops over whole videos and values known beforehand; views sorted by camera. */
-#include "data/group_views.h"
 #include "metric/changes.h"
 #include "metric/metric.h"
 #include "metric/temporal.h"
+#include "scene/group_views.h"
 
 #include <math.h>
 #include <setjmp.h>

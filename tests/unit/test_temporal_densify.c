@@ -6,10 +6,10 @@
 #include "square_scene.h"
 
 #include "encode/encode.h"
-#include "train/anchor_set.h"
+#include "train/density/anchor_set.h"
+#include "train/density/temporal_densify.h"
 #include "train/settings.h"
 #include "train/start_points.h"
-#include "train/temporal_densify.h"
 #include "train/train_views.h"
 #include "train/trainer.h"
 

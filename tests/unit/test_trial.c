@@ -2,8 +2,8 @@
 /** \file Trials judge on training views that they hold back, drop the mechanisms that lose, and keep the others. */
 #include "tiny_scene.h"
 
-#include "train/trial.h"
-#include "train/trial_scene.h"
+#include "train/trial/trial.h"
+#include "train/trial/trial_scene.h"
 
 /* ---- Held-back views ---- */
 

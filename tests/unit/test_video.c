@@ -3,9 +3,9 @@
 #include "video_files.h"
 
 #include "base/thread_pool.h"
-#include "data/clips.h"
-#include "data/scene.h"
-#include "io/video.h"
+#include "media/video/video.h"
+#include "scene/clips.h"
+#include "scene/scene.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 /** \file Videos from other encoders: codecs, bit depths, colours, shapes, start positions. */
 #include "video_clips.h"
 
-#include "io/video.h"
+#include "media/video/video.h"
 
 #define expect_good(call)                              \
     do {                                               \

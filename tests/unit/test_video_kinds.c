@@ -3,7 +3,7 @@
 #include "video_clips.h"
 #include "video_files.h"
 
-#include "io/video.h"
+#include "media/video/video.h"
 
 /** Light of a screen by the formulae of BT.2100, 1 for 203 cd/m2. */
 static void screen_light(int is_pq, const double signal[3], double light[3])

@@ -2,7 +2,7 @@
 /** \file Videos in the user's codec, at the user's rate, with alpha. FFmpeg itself decodes the written files. */
 #include "outside_files.h"
 
-#include "io/video.h"
+#include "media/video/video.h"
 
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>

@@ -6,10 +6,10 @@
 #include "outside_files.h"
 
 #include "encode/encode.h"
-#include "layouts/open.h"
-#include "scenes/scenes.h"
+#include "scene/layouts/open.h"
+#include "synthetic/scenes.h"
 #include "train/settings.h"
-#include "train/state.h"
+#include "train/state/state.h"
 #include "train/trainer.h"
 
 static adcgs_scene *scene;

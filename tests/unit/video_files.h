@@ -5,7 +5,7 @@
 
 #include "outside_files.h"
 
-#include "io/video.h"
+#include "media/video/video.h"
 
 #include <math.h>
 

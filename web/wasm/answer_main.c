@@ -2,9 +2,10 @@
 /** \file The decoder as a command of WASI for the conformance vectors. It answers requests like `adcgs-dec --answer`. */
 #include "config.h"
 
-#include "tools/answer.h"
+#include "apps/shared/answer.h"
 
 #include "cli/cli.h"
+#include "system/interrupt.h"
 
 #include <adcgs/adcgs.h>
 

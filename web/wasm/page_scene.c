@@ -7,7 +7,7 @@
 #include "base/digest.h"
 #include "camera/follow.h"
 #include "camera/pivot.h"
-#include "camera/rotation.h"
+#include "geometry/rotation.h"
 #include "stream/chunk.h"
 #include "wasm/export.h"
 #include "wasm/page_scene.h"

@@ -2,10 +2,10 @@
 /** \file The page's camera, clock and keys: the player's state, changed by events. One per instance. */
 #include "config.h"
 
-#include "camera/rotation.h"
-#include "play/scale.h"
+#include "geometry/rotation.h"
 #include "play/actions.h"
 #include "play/by_hand.h"
+#include "play/scale.h"
 #include "render/render.h"
 #include "wasm/export.h"
 

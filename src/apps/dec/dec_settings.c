@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The options of adcgs-dec and their combinations. */
+#include "config.h"
+
+#include "apps/dec/dec_settings.h"
+
+#include "apps/dec/dec_open.h"
+#include "base/cpu_detect.h"
+#include "system/numbers.h"
+
+#include <stdlib.h>
+
+/** Options for the target of frames, and its samples. */
+static void add_frame_options(adcgs_option_table *out, adcgs_dec_settings *s)
+{
+    static const char *const formats[] = {"y4m", "raw", "null", NULL};
+    const adcgs_option table[] = {
+        {"output", 'o', ADCGS_OPTION_FILE, &s->output, 0, 0, "TARGET",
+         "target of frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.mp4 (.mov .mkv .webm .avi), clip.y4m, pixels.raw,\n"
+         "or - for standard output",
+         NULL, NULL},
+        {"format", 'f', ADCGS_OPTION_STRING, &s->format, 0, 0, "NAME",
+         "y4m, raw, null, an image's or a video's extension\n(default: by the target's name; - is y4m)", formats, NULL},
+        {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
+        {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL, NULL},
+        {"linear", 0, ADCGS_OPTION_FLAG, &s->linear, 0, 0, NULL, "linear light in EXR instead of sRGB's curve", NULL, NULL},
+        {"splats", 0, ADCGS_OPTION_FILE, &s->splats, 0, 0, "FILE",
+         "target of splats instead of frames, as .ply, .spz, .glb or .sog:\n"
+         "out.ply for one time (default: the first), out%04d.ply for a\nrange of times",
+         NULL, NULL},
+        {"f-rest", 0, ADCGS_OPTION_INT, &s->rest_degree, 1, 3, "DEGREE",
+         "with --splats: degree of the zero harmonics in PLY, for programs\nthat require them (default: none)", NULL, NULL},
+        {"bits", 0, ADCGS_OPTION_INT, &s->bits, 8, 16, "N", "bits of a sample in PNG, TIFF and PPM: 8 or 16", NULL, NULL},
+        {"alpha", 0, ADCGS_OPTION_FLAG, &s->alpha, 0, 0, NULL,
+         "write alpha and leave out the background: premultiplied in\nEXR, straight in PNG, TIFF and videos", NULL, NULL},
+        {"depth", 0, ADCGS_OPTION_FLAG, &s->depth, 0, 0, NULL, "write depth as channel Z of EXR, in world units", NULL, NULL},
+    };
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
+}
+
+/** Options for the coding of videos. */
+static void add_video_options(adcgs_option_table *out, adcgs_dec_settings *s)
+{
+    static const char *const codecs[] = {"h264", "hevc", "vp9", "av1", "mpeg4", "ffv1", "prores", "qtrle", NULL};
+    const adcgs_option table[] = {
+        {"codec", 0, ADCGS_OPTION_STRING, &s->video.codec, 0, 0, "NAME",
+         "codec of a video: h264, hevc, vp9, av1, ffv1, prores, qtrle or\n"
+         "the name of an FFmpeg encoder (default: by the target's name)",
+         codecs, NULL},
+        {"crf", 0, ADCGS_OPTION_REAL, &s->video.crf, 0, 63, "Q", "constant rate factor of a video: lower is better, and larger",
+         NULL, &s->video.has_crf},
+        {"bitrate", 0, ADCGS_OPTION_SIZE, &s->video.bit_rate, 1000, 1e10, "BITS",
+         "bits per second of a video (8M) instead of a quality", NULL, NULL},
+        {"codec-options", 0, ADCGS_OPTION_STRING, &s->video.options, 0, 0, "NAME=VALUE:...",
+         "options of FFmpeg for the encoder, and pix_fmt", NULL, NULL},
+        {"sound", 0, ADCGS_OPTION_FILE, &s->video.sound, 0, 0, "FILE", "sound to put into a video, unchanged", NULL, NULL},
+        {"sound-offset", 0, ADCGS_OPTION_SECONDS, &s->sound_offset, -1e6, 1e6, "TIME",
+         "time of the stream at which the sound begins (default: 0)", NULL, &s->has_sound_offset},
+    };
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
+}
+
+/** Options for cameras, times and sizes: the shown part. */
+static void add_view_options(adcgs_option_table *out, adcgs_dec_settings *s)
+{
+    static const char *const ways[] = {"follow", "orbit", "spiral", "bullet", NULL};
+    const adcgs_option table[] = {
+        {"beside", 0, ADCGS_OPTION_FILE, &s->beside, 0, 0, "OTHER",
+         "other stream, shown to the right through the same cameras at\nthe same times", NULL, NULL},
+        {"camera", 'c', ADCGS_OPTION_FILE, &s->request.camera, 0, 0, "WHICH",
+         "name or index of a stored camera, follow, orbit, spiral,\n"
+         "bullet, or a path (.json, .chan, .usda) (default: follow, else\ncamera 0, or orbit if none is stored)",
+         ways, NULL},
+        {"cameras", 0, ADCGS_OPTION_FILE, &s->cameras, 0, 0, "PATH",
+         "file for the stored cameras, or for the path of --camera, as\nPATH.json, .chan or .usda; nothing else is written", NULL,
+         NULL},
+        {"rotation-order", 0, ADCGS_OPTION_CHOICE, &s->order, 0, 0, "ORDER",
+         "order of the angles in .chan files: xyz (the default), zxy, ...", adcgs_rotation_orders, NULL},
+        {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B|N%",
+         "one time, or a range at the stream's frame rate, seconds, or\n"
+         "the frame at N percent of the stream (default: everything)",
+         NULL, NULL},
+        {"size", 's', ADCGS_OPTION_PAIR, s->request.size, 1, 16384, "WxH", "size of the frames; pixels keep their shape", NULL,
+         NULL},
+        {"fit", 0, ADCGS_OPTION_FLAG, &s->fit, 0, 0, NULL,
+         "for frames of another shape: show the whole view of the\n"
+         "camera, and more on two sides (default with --size)",
+         NULL, NULL},
+        {"fill", 0, ADCGS_OPTION_FLAG, &s->request.fill, 0, 0, NULL,
+         "for frames of another shape: show only the view of the\ncamera, less on two sides", NULL, NULL},
+    };
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
+}
+
+/** Options for the used part of the stream, and for checks. */
+static void add_decoding_options(adcgs_option_table *out, adcgs_dec_settings *s)
+{
+    const adcgs_option table[] = {
+        {"layers", 'L', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "layers of the stream to use, at most", NULL, NULL},
+        {.letter = 'l', .kind = ADCGS_OPTION_FORMER, .value = "layers"},
+        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "tiers of the stream to render; fewer give a coarser image", NULL,
+         NULL},
+        {"budget", 0, ADCGS_OPTION_STRING, &s->budget_text, 0, 0, "B",
+         "limit of the bytes read (40k), or of splats (20000splats) or\n"
+         "milliseconds per frame (16ms), which the number of rendered\ntiers meets",
+         NULL, NULL},
+        {"md5", 0, ADCGS_OPTION_FLAG, &s->md5, 0, 0, NULL,
+         "print the MD5 of each frame: its RGB values as little-endian\nbinary32, row by row", NULL, NULL},
+        {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "MD5 that all frames together must have", NULL, NULL},
+        {"answer", 0, ADCGS_OPTION_FILE, &s->answer, 0, 0, "REQUESTS",
+         "file of requests for digests to answer, see the\nspecification's clause on conformance", NULL, NULL},
+        {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL,
+         "print milliseconds from opening to the first frame, then the\nrender time of each frame", NULL, NULL},
+    };
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
+}
+
+/** Options for the window, the machine and damaged streams. */
+static void add_program_options(adcgs_option_table *out, adcgs_dec_settings *s)
+{
+    const adcgs_option table[] = {
+        {"play", 0, ADCGS_OPTION_FLAG, &s->play, 0, 0, NULL, "show the stream in a window, with a movable camera", NULL, NULL},
+        {"script", 0, ADCGS_OPTION_FILE, &s->script, 0, 0, "COMMANDS", "with --play: file of commands that replace the user's",
+         NULL, NULL},
+        {"threads", 'T', ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads (default: one per CPU)", NULL, NULL},
+        {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; no effect on the frames",
+         adcgs_cpu_names, NULL},
+        {"conceal", 0, ADCGS_OPTION_FLAG, &s->config.conceal, 0, 0, NULL,
+         "show the intact parts of a damaged file, and report faults", NULL, NULL},
+        {"strict", 0, ADCGS_OPTION_FLAG, &s->config.strict_end, 0, 0, NULL, "refuse a stream that ends early", NULL, NULL},
+    };
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
+}
+
+void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option_table *options)
+{
+    add_frame_options(options, s);
+    add_video_options(options, s);
+    add_view_options(options, s);
+    add_decoding_options(options, s);
+    add_program_options(options, s);
+}
+
+/** Reports a concealed fault. */
+static void report_fault(void *user, adcgs_log_level level, const char *text)
+{
+    const adcgs_dec_settings *s = user;
+    if (level == ADCGS_LOG_WARNING)
+        adcgs_cli_note(s->cli, "%s: %s", s->input, text);
+}
+
+int adcgs_dec_has_style(const adcgs_dec_settings *s)
+{
+    return s->video.codec || s->video.has_crf || s->video.bit_rate || s->video.options || s->video.sound;
+}
+
+/** True if an option for the format of frames is given. */
+static int shapes_output(const adcgs_dec_settings *s)
+{
+    return s->format || s->half || s->use_float || s->linear || s->bits || s->alpha || s->depth || s->beside ||
+           adcgs_dec_has_style(s);
+}
+
+/** Checks the options for the format of frames. */
+static adcgs_status check_output(const adcgs_dec_settings *s, adcgs_error *error)
+{
+    if (shapes_output(s) && !s->output)
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--format, --half, --float, --linear, --bits, --alpha, --depth, --codec, --crf, --bitrate, "
+                          "--codec-options, --sound and --beside need --output");
+    if (s->has_sound_offset && !s->video.sound)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--sound-offset needs --sound");
+    if (s->video.has_crf && s->video.bit_rate)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--crf and --bitrate exclude each other");
+    return ADCGS_OK;
+}
+
+/** Checks the options next to --play. */
+static adcgs_status check_play(const adcgs_dec_settings *s, adcgs_error *error)
+{
+    const int written = s->output || shapes_output(s) || s->splats || s->cameras;
+    if (s->play && (written || s->md5 || s->verify || s->answer || s->frametimes))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--play excludes options that write or measure frames");
+    if (s->script && !s->play)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--script needs --play");
+    return ADCGS_OK;
+}
+
+/** Parses T, A:B or N%. */
+static adcgs_status check_times(adcgs_dec_settings *s, adcgs_error *error)
+{
+    char *end;
+    s->part = -1.0;
+    s->request.has_times = s->times != NULL;
+    if (!s->times)
+        return ADCGS_OK;
+    const double percent = strtod(s->times, &end);
+    if (end != s->times && !strcmp(end, "%") && percent >= 0.0 && percent <= 100.0)
+        s->part = percent / 100.0;
+    else if (adcgs_parse_times(s->times, &s->request.begin, &s->request.end))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: expected seconds, A:B with A not after B, or 0%% to 100%%",
+                          s->times);
+    if (s->play && s->part >= 0.0)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: --play takes seconds", s->times);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
+{
+    s->config.cpu = (adcgs_cpu_level)s->cpu;
+    ADCGS_TRY(check_times(s, error));
+    if (s->budget_text)
+        ADCGS_TRY(adcgs_budget_parse(&s->budget, s->budget_text, error));
+    if (s->tiers && (s->play || s->answer))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--tiers excludes --play and --answer");
+    if (s->budget_text && (s->tiers || s->play || s->answer || s->config.conceal || s->splats || s->cameras || s->beside))
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--budget excludes --tiers, --play, --answer, --conceal, --splats, --cameras and --beside");
+    if (s->config.conceal && !strcmp(s->input, "-"))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--conceal needs a file: standard input cannot be read twice");
+    if (s->config.conceal) {
+        s->config.log = report_fault;
+        s->config.log_user = s;
+    }
+    s->config.on_demand = s->times || s->play; /* a whole clip is read, and checked, as a whole */
+    ADCGS_TRY(check_play(s, error));
+    if (s->half && s->use_float)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--half and --float exclude each other");
+    const int frames = s->output || s->request.camera || s->request.size[0] || s->md5 || s->verify || s->frametimes;
+    if (s->answer && (frames || s->times || s->cameras))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--answer goes with --layers, --strict, --threads and --cpu only");
+    if (s->splats && (s->answer || s->cameras || frames))
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--splats goes with --f-rest, --time, --layers, --strict, --threads and --cpu only");
+    if (s->rest_degree && !s->splats)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--f-rest needs --splats");
+    ADCGS_TRY(check_output(s, error));
+    if ((s->fit || s->request.fill) && !s->request.size[0])
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fit and --fill need --size");
+    if (s->fit && s->request.fill)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fit and --fill exclude each other");
+    if (s->bits % 8)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits %d: expected 8 or 16", s->bits);
+    if (s->bits && (s->half || s->use_float))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits excludes --half and --float");
+    if (s->beside && (s->alpha || s->depth || s->md5 || s->verify || s->frametimes))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--beside excludes --alpha, --depth, --md5, --verify and --frametimes");
+    if (!s->output && !s->md5 && !s->verify && !s->frametimes && !s->answer && !s->splats && !s->cameras && !s->play)
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "no output: give -o TARGET, --md5, --verify, --frametimes, --splats, --cameras, --answer or --play");
+    const int renders = s->output || s->md5 || s->verify || s->frametimes;
+    if (s->cameras && (renders || (!s->request.camera && (frames || s->times))))
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--cameras renders nothing: it goes with --camera only, and with --time and "
+                          "--size if --camera is given");
+    s->request.order = (adcgs_rotation_order)s->order;
+    if (s->output && !strcmp(s->output, "-") && (s->md5 || s->frametimes))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--md5 and --frametimes need standard output, which --output uses");
+    if (s->verify && (strlen(s->verify) != 32 || strspn(s->verify, "0123456789abcdefABCDEF") != 32))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--verify %s: expected 32 hexadecimal digits", s->verify);
+    return ADCGS_OK;
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Settings of adcgs-dec. */
+#ifndef ADCGS_APPS_DEC_DEC_SETTINGS_H
+#define ADCGS_APPS_DEC_DEC_SETTINGS_H
+
+#include "apps/dec/dec_budget.h"
+#include "camera/path.h"
+#include "cli/cli.h"
+#include "media/operand.h"
+#include "media/video/video.h"
+
+typedef struct adcgs_dec_settings {
+    const adcgs_cli *cli;
+    const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script, *budget_text;
+    adcgs_budget budget;
+    adcgs_video_style video;
+    adcgs_camera_path_request request;
+    adcgs_config config;
+    int quiet, order, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
+    int has_sound_offset;
+    double sound_offset;                 /**< time of the stream at which the sound begins, in seconds */
+    double part;                         /**< part of the stream at which the frame lies (--time N%); negative: not given */
+    double opened;                       /**< time before opening the input, in seconds */
+    adcgs_operand source, beside_source; /**< of the bytes that the decoders still read */
+} adcgs_dec_settings;
+
+/** Fills the table of options, in the order of the help, with targets in the settings. */
+void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option_table *options);
+/** Checks the rules that the table cannot express, and sets the derived settings. */
+adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error);
+/** True if the coding of a video was specified. */
+int adcgs_dec_has_style(const adcgs_dec_settings *s);
+
+#endif

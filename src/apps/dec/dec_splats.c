@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file adcgs-dec --splats: writes the splats of one or several times as files. */
+#include "config.h"
+
+#include "apps/dec/dec_splats.h"
+
+#include "media/sink.h"
+#include "media/splats/offset.h"
+#include "media/splats/splats.h"
+#include "system/extension.h"
+#include "system/interrupt.h"
+#include "system/text.h"
+
+#include <adcgs/decoder.h>
+
+#include <stdlib.h>
+#include <strings.h>
+
+static adcgs_status check_target(const char *target, const adcgs_splats_style *style, int has_many, adcgs_error *error)
+{
+    const int places = adcgs_pattern_places(target);
+    ADCGS_TRY(adcgs_splats_check_name(target, style, error));
+    if (places < 0 || places > 1)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: expected one number like %%04d in the name", target);
+    if (!places && has_many)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a range of times needs a number like %%04d in the name", target);
+    return ADCGS_OK;
+}
+
+/** The code for the axes of adcgs_info, which are words. */
+static uint8_t axes_of(const adcgs_info *info)
+{
+    static const struct {
+        const char *words;
+        uint8_t code;
+    } table[] = {{", y up", ADCGS_SPLATS_Y_UP}, {", z up", ADCGS_SPLATS_Z_UP}, {", y down", ADCGS_SPLATS_Y_DOWN}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (strstr(info->axes, table[i].words))
+            return table[i].code;
+    return ADCGS_SPLATS_UP_UNKNOWN;
+}
+
+static adcgs_status write_frame(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, double time, int rest_degree,
+                                const char *path, adcgs_error *error)
+{
+    adcgs_primitives primitives;
+    adcgs_splats splats;
+    char comment[128];
+    const adcgs_splats_style style = {.comment = comment, .rest_degree = rest_degree};
+    ADCGS_TRY(adcgs_get_primitives(decoder, time, &primitives, error));
+    ADCGS_TRY(adcgs_splats_take(&splats, &primitives, info->scene_origin, info->scene_scale, path, error));
+    splats.axes = axes_of(info);
+    snprintf(comment, sizeof comment, "adcgs %s, time %.9g s", PACKAGE_VERSION, time);
+    const adcgs_status status = adcgs_splats_write(&splats, &style, path, error);
+    *n = splats.n;
+    adcgs_splats_free(&splats);
+    return status;
+}
+
+/** Reports the offset, and its place in the file, if binary32 cannot hold positions in the world. */
+static void report_offset(const adcgs_cli *cli, const adcgs_info *info, const char *target)
+{
+    static const struct {
+        const char *extension, *place;
+    } formats[] = {{"glb", "the file's node adds it again"}, {"ply", "a comment of its header contains it"}};
+    const char *place = "add it again: the format cannot store it";
+    double offset[3];
+    if (!adcgs_offset_of(offset, info->scene_origin, info->scene_scale))
+        return;
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        place = strcasecmp(adcgs_extension(target), formats[i].extension) ? place : formats[i].place;
+    adcgs_cli_note(cli, "%s: the scene is too far from the origin for binary32: the offset %.17g %.17g %.17g is subtracted%s; %s",
+                   target, offset[0], offset[1], offset[2], place == formats[1].place ? "" : " (before y is turned up)", place);
+}
+
+static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, const adcgs_dec_splats_config *how,
+                              const adcgs_camera_path *frames, adcgs_error *error)
+{
+    const size_t size = strlen(how->target) + 128;
+    char *path = malloc(size);
+    if (!path)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", how->target);
+    adcgs_status status = ADCGS_OK;
+    for (int i = 0; i < frames->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
+        adcgs_pattern_format(how->target, i, path, size);
+        status = write_frame(n, decoder, info, frames->frame[i].time, how->rest_degree, path, error);
+    }
+    free(path);
+    return status;
+}
+
+adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input, const adcgs_dec_splats_config *how,
+                              const adcgs_camera_path_request *request, adcgs_error *error)
+{
+    const adcgs_splats_style style = {.rest_degree = how->rest_degree};
+    adcgs_info info;
+    adcgs_camera_path frames;
+    uint32_t n = 0;
+    adcgs_camera_path_request times = {.has_times = 1, .begin = request->begin, .end = request->end};
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
+    if (!request->has_times) {
+        times.begin = info.time_start;
+        times.end = adcgs_pattern_places(how->target) == 0 ? info.time_start : info.time_end;
+    }
+    ADCGS_TRY(check_target(how->target, &style, times.end > times.begin, error));
+    if (info.truncated)
+        adcgs_cli_note(cli, "%s: the stream ends early; writing its complete part", input);
+    ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &times, error));
+    if (frames.outside)
+        adcgs_cli_note(cli,
+                       "%s: %d of %d file%s %s its first or last frame: the stream lasts from %g to %g "
+                       "s",
+                       input, frames.outside, frames.n, adcgs_s((uint64_t)frames.n), frames.outside == 1 ? "shows" : "show",
+                       info.time_start, info.time_end);
+    const adcgs_status status = write_all(&n, decoder, &info, how, &frames, error);
+    if (status == ADCGS_OK && !adcgs_interrupted())
+        report_offset(cli, &info, how->target);
+    if (status == ADCGS_OK && !adcgs_interrupted())
+        adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, frames.n, frames.n == 1 ? "" : "s", n);
+    adcgs_camera_path_free(&frames);
+    return status;
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file adcgs-dec --splats: writes the splats of one or several times as files. */
+#ifndef ADCGS_APPS_DEC_DEC_SPLATS_H
+#define ADCGS_APPS_DEC_DEC_SPLATS_H
+
+#include "camera/path.h"
+#include "cli/cli.h"
+
+/** Settings of the command line for splats. */
+typedef struct adcgs_dec_splats_config {
+    const char *target;
+    int rest_degree; /**< see adcgs_splats_style */
+} adcgs_dec_splats_config;
+
+/**
+ * Writes the splats at the requested times, each to a file of its own. target has one number like %04d in its name, or there is
+ * only one time. Without requested times, a target without a number gets the stream's first time, and a target with one gets all
+ * times. input names the stream.
+ */
+adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input, const adcgs_dec_splats_config *how,
+                              const adcgs_camera_path_request *request, adcgs_error *error);
+
+#endif

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Anchors and networks that fit into a size. */
+#include "train/rate/rate_plan.h"
+
+#include <math.h>
+
+enum {
+    OTHER_BYTES = 1700, /* upper estimate for headers, cameras and metadata */
+    ANCHOR_BITS = 220,  /* per anchor at a small lambda; a large size allows more anchors than a preset by it */
+    FEWEST_BITS = 50,   /* per anchor at a large lambda; a small size allows fewer anchors than a preset by it */
+    ANCHORS_LEAST = 16,
+    WIDTH_LEAST = 8
+};
+#define NETWORKS_SHARE 0.25 /* plausible share of the networks in a size */
+#define UNITS_STAY 0.3      /* share of the weights that remain after pruning of hidden units */
+#define LAMBDA_FIRST 0.1f   /* initial lambda of a search */
+#define ANCHORS_GROWTH 4    /* maximum factor by which a large size raises a preset's budget */
+
+/** Number of weights of all networks under a configuration. */
+static adcgs_status count_weights(const adcgs_train_config *c, size_t *weights, adcgs_error *error)
+{
+    static const float origin[3];
+    static const uint32_t place[1][3];
+    adcgs_params params = c->params;
+    adcgs_fmodel *f;
+    *weights = 0;
+    params.bodies = 0; /* not known yet, and few scenes have the maximum number */
+    ADCGS_TRY(adcgs_fmodel_create(&f, &params, &c->shape, origin, 1, place, 1, 0, error));
+    for (int i = 0; i < ADCGS_P_COUNT; i++)
+        *weights += f->mlp[i].n;
+    adcgs_fmodel_free(&f);
+    return ADCGS_OK;
+}
+
+static int narrower(int width, double factor)
+{
+    const int scaled = 4 * (int)rint(width * factor / 4);
+    return width ? ADCGS_MIN(width, ADCGS_MAX(scaled, WIDTH_LEAST)) : 0; /* 0: the network is left out */
+}
+
+/** Chooses the widest networks, from fractions of the preset's width, that leave room for anchors. */
+static adcgs_status plan_networks(adcgs_train_config *c, double *bytes, adcgs_error *error)
+{
+    const double share = NETWORKS_SHARE * c->target_value;
+    const double room = c->own_anchors ? c->target_value - OTHER_BYTES - (double)c->max_anchors * ANCHOR_BITS / 8 : 0;
+    static const double factors[] = {1, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125};
+    const adcgs_shape wide = c->shape;
+    for (size_t i = 0; i < ADCGS_COUNTOF(factors); i++) {
+        size_t weights;
+        c->shape.theta_width = narrower(wide.theta_width, factors[i]);
+        c->shape.omega_width = narrower(wide.omega_width, factors[i]);
+        c->shape.varpi_width = narrower(wide.varpi_width, factors[i]);
+        c->shape.entropy_width = narrower(wide.entropy_width, factors[i]);
+        ADCGS_TRY(count_weights(c, &weights, error));
+        *bytes = (adcgs_train_prunes_units(c) ? UNITS_STAY : 1) * (double)weights * ADCGS_WEIGHT_BITS / 8;
+        if (c->own_networks || *bytes <= fmax(share, room))
+            break;
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_rate_plan(adcgs_train_config *c, adcgs_error *error)
+{
+    double networks;
+    if (c->target != ADCGS_TARGET_NONE)
+        c->lambda = LAMBDA_FIRST;
+    if (c->target != ADCGS_TARGET_SIZE)
+        return ADCGS_OK;
+    ADCGS_TRY(plan_networks(c, &networks, error));
+    const double anchors = floor((c->target_value - networks - OTHER_BYTES) * 8 / ANCHOR_BITS);
+    if (anchors < ANCHORS_LEAST)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.0f bytes are too few: networks, cameras and headers alone take about %.0f",
+                          c->target_value, networks + OTHER_BYTES);
+    if (!c->own_anchors)
+        c->max_anchors = (uint32_t)fmax(fmin(anchors, fmin((double)c->max_anchors * ANCHORS_GROWTH, ADCGS_ANCHORS_MAX)),
+                                        fmin(anchors * ANCHOR_BITS / FEWEST_BITS, c->max_anchors));
+    c->start_anchors = ADCGS_MIN(c->start_anchors, c->max_anchors);
+    return ADCGS_OK;
+}

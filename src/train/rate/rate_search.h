@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Search for the lambda of a size or a quality. Content discarded early does not come back, and content kept early hardly goes.
+ * So a run with a target has one lambda from rate_start until after prune_at. By then its final bytes are known within a few
+ * percent, and its PSNR within some tenths. If they do not fit, the run returns to rate_start with a better lambda. After the
+ * search, lambda is controlled (rate_control.h).
+ */
+#ifndef ADCGS_TRAIN_RATE_RATE_SEARCH_H
+#define ADCGS_TRAIN_RATE_RATE_SEARCH_H
+
+#include "train/state/state.h"
+
+/** True if the search is not finished. A run with a time limit cannot return. */
+int adcgs_rate_is_sought(const adcgs_trainer *trainer);
+/** Called before each iteration during the search. If the run returns, t->iteration decreases and so progress changes. */
+adcgs_status adcgs_rate_search_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
+
+/**
+ * Called after values are frozen. missing: dB below the target, negative if above. On the first shortfall, a run with a search
+ * returns as above.
+ */
+adcgs_status adcgs_rate_search_end(adcgs_trainer *trainer, double missing, adcgs_error *error);
+
+#endif

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The state of a run, on which all stages of training work. Each stage has its own header; only stages.c calls them.
+ */
+#ifndef ADCGS_TRAIN_STATE_STATE_H
+#define ADCGS_TRAIN_STATE_STATE_H
+
+#include "bits/bytes.h"
+#include "check/faults.h"
+#include "fmodel/pass.h"
+#include "fmodel/rdo_input.h"
+#include "fmodel/rigidity.h"
+#include "fmodel/scale_penalty.h"
+#include "fmodel/weight_average.h"
+#include "grad/distortion.h"
+#include "grad/loss.h"
+#include "init/stereo.h"
+#include "scene/image_store.h"
+#include "train/exposure/exposure.h"
+#include "train/rate/rate_state.h"
+#include "train/schedule.h"
+#include "train/state/decisions.h"
+#include "train/team/team.h"
+#include "train/team/tree_sum.h"
+#include "train/time_curriculum.h"
+#include "train/time_left.h"
+#include "train/trial/trial.h"
+
+typedef struct adcgs_train_view {
+    adcgs_view view;
+    float t;
+} adcgs_train_view;
+
+/** Sums since the last densification, per slot. */
+typedef struct adcgs_train_stats {
+    float *weight;       /* Psi */
+    float *significance; /* Psi times screen gradient */
+    float *opacity;
+    float *presence; /* of each anchor, [groups][64] */
+    float *in_view;  /* likewise, in views whose image contains one of its primitives */
+    uint32_t n;      /* number of view passes */
+} adcgs_train_stats;
+
+/** Total size of the arrays, which are consecutive. */
+size_t adcgs_train_stats_size(const adcgs_fmodel *f);
+adcgs_train_stats adcgs_train_stats_at(float *numbers, const adcgs_fmodel *f);
+
+/** Results of a view pass in addition to gradients and statistics. */
+typedef struct adcgs_view_result {
+    double loss, mse;
+    double bits[ADCGS_GROUPS]; /* 0 if rate is not in the loss */
+    adcgs_exposure_sums sums;  /* 0 if exposure is not updated */
+} adcgs_view_result;
+
+/** View passes of an iteration; see batch.h. */
+typedef struct adcgs_train_batch {
+    adcgs_view_result *results;   /* [config.batch] */
+    float *sum[ADCGS_TREE_PARTS]; /* [size] gradients and statistics, if there are several passes */
+    size_t size;
+    float *means; /* means of the pass before the iteration */
+    float *room;  /* receive buffer for a team */
+} adcgs_train_batch;
+
+/** Frees the sums and means after a change of their size. */
+void adcgs_train_batch_forget(adcgs_train_batch *batch);
+
+typedef struct adcgs_trainer {
+    adcgs_train_config config;
+    const adcgs_scene *scene;
+    adcgs_cpu_level cpu;
+    adcgs_pool *pool;
+    double origin[3], scale;
+    adcgs_fmodel *f;
+    adcgs_pass *pass;
+    adcgs_raster *raster;
+    adcgs_raster_back *back;
+    adcgs_loss *loss;
+    adcgs_rigidity rigid;
+    adcgs_distortion distortion;
+    adcgs_curriculum curriculum;
+    adcgs_exposure exposure;
+    adcgs_viewpoints viewpoints;
+    adcgs_stereo stereo;
+    uint32_t n_views;
+    adcgs_train_view *views;
+    adcgs_image_store *pictures;        /* of the training views */
+    int divide;                         /* of the loaded views; 0: none */
+    uint64_t picture_memory;            /* maximum bytes of them; 0: half of the machine's memory */
+    adcgs_image_store_progress loading; /* called for each loaded image, or NULL */
+    void *loading_user;
+    adcgs_thumbnail *thumbnails; /* [n_views] of loaded images, owned by the caller; NULL: not wanted */
+    adcgs_fault duplicates;      /* duplicated images, if they were searched */
+    float *image, *grad;
+    float *taken; /* recorded image of the current view */
+    adcgs_train_stats stats;
+    adcgs_train_batch batch;
+    adcgs_weight_average average;
+    adcgs_train_quantise quantise; /* provided by the code that builds streams; NULL: values stay unquantised */
+    adcgs_train_measure measure;   /* likewise; used if there is a target size */
+    void *measure_user;
+    const adcgs_team *team; /* runs that share the work; NULL: none */
+    int until_lambda;       /* 1: stop before the first iteration that lambda affects */
+    /* State in checkpoints in addition to the model. */
+    uint32_t iteration;
+    uint8_t lambda_used; /* 1: lambda has affected the run and must not change */
+    uint8_t fixed_unchanging, motion_tested, units_pruned, pruned, tiered, rounding, frozen;
+    uint8_t unfreeze_tests; /* number of times that anchors were tested for unfreezing */
+    uint8_t before[16];     /* digest of the previous segment's model; 0 without one */
+    float lr_scale;
+    double contrast; /* of the initial training images; 0: unknown */
+    double lambda;   /* of the rate; the configuration's, scaled by contrast or controlled by a target */
+    adcgs_rate_control rate_control;
+    uint32_t rollbacks;
+    int diverged; /* the run ended after too many rollbacks */
+    double mean_loss, mean_mse;
+    double least_mse;   /* minimum of mean_mse; 0 before the first iteration */
+    adcgs_time elapsed; /* of all programs that took part in the run */
+    double mean_bits[ADCGS_GROUPS];
+    adcgs_decisions decisions;
+    char trials[ADCGS_TRIALS_TEXT]; /* results of trials before the run, for the stream; "" without trials */
+    /* State that is not in checkpoints. */
+    adcgs_time started; /* start of this program's time; clock 0: when the run begins or continues */
+    adcgs_time_left left;
+    uint8_t content[16]; /* of the training images' files; see adcgs_scene_content() */
+    int has_content;     /* 1: known; computed once, when a file needs it */
+    adcgs_buffer snapshot;
+    uint32_t snapshot_at; /* its iteration */
+    int torn;             /* 1: the state is between two steps of a change; only the snapshot is consistent */
+    adcgs_buffer begin;   /* in checkpoints, too: state at rate_start, while the run may return; see rate_search.h */
+} adcgs_trainer;
+
+/** ADCGS_ERR_USAGE for a configuration that does not pass adcgs_train_check(). */
+adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                  adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
+/**
+ * The same for a part of a scene whose model continues that of the previous part, for a predicted segment. before: has the times
+ * of its part in seconds of the scene; may be freed after the call. NULL: none.
+ */
+adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                        const adcgs_model *before, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
+/** The same with the matching result of another run over the scene. It is moved to trainer->stereo and may be moved back. */
+adcgs_status adcgs_trainer_create_matched(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                          adcgs_stereo *matched, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
+void adcgs_trainer_free(adcgs_trainer **trainer);
+/** Frees the loaded images and the image buffers. */
+void adcgs_views_unload(adcgs_trainer *trainer);
+/** After a change of the anchors: reallocates workspace and statistics. */
+adcgs_status adcgs_trainer_resize(adcgs_trainer *trainer, adcgs_error *error);
+/** Derives the form of the networks' parameters that passes use, rounded to the weight steps once weights are rounded. */
+void adcgs_trainer_prepare_networks(adcgs_trainer *trainer);
+/** Converts a time of the scene to the model's time, [0,1]. */
+float adcgs_trainer_time(const adcgs_trainer *trainer, double seconds);
+/** Progress of the run, in [0,1]. */
+double adcgs_trainer_progress(const adcgs_trainer *trainer);
+
+/** Loss per bit: lambda is the loss per mebibyte. */
+static inline double adcgs_cost_of_bit(const adcgs_trainer *t)
+{
+    return t->lambda * 0x1p-23;
+}
+
+#endif
