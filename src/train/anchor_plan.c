@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin: chosen by hand, not measured. The rule between them is calibrated (doc/log/anchors.md, "Grid of anchor numbers"). */
 enum {
     PICTURES_MOST = 16, /* maximum number of images for the details */
     ANCHORS_LEAST = 100 /* minimum of max_anchors */

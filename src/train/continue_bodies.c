@@ -7,7 +7,8 @@
 
 #include <math.h>
 
-#define NEAR 0.03 /* scene units: minimum radius within which a found body matches one of the model */
+/* Scene units: minimum radius within which a found body matches one of the model; chosen by hand, not measured. */
+#define NEAR 0.03
 
 /** State of a model's body at the start of the segment: rotation, centre of rotation at rest and now, size. */
 typedef struct stand {

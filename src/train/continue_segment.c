@@ -8,8 +8,14 @@
 
 #include <math.h>
 
-#define GONE 0.05f  /* presence below which an anchor's lifetime has ended */
-#define STRAYS 4e-3 /* scene units of motion by the anchor's velocity, below which its position is the same in both segments */
+#define GONE 0.05f /* presence below which an anchor's lifetime has ended; chosen by hand, not measured */
+/* Presence at both ends of a segment, from which a lifetime covers it; chosen by hand, not measured. */
+#define LIVES 0.9f
+/*
+ * Scene units of motion by the anchor's velocity, below which its position is the same in both segments; chosen by hand, not
+ * measured.
+ */
+#define STRAYS 4e-3
 
 /** True if an anchor lives through the whole segment without velocity, so that the next segment can share it. */
 static int lives_whole(const adcgs_fmodel *f, uint32_t i)
@@ -17,7 +23,7 @@ static int lives_whole(const adcgs_fmodel *f, uint32_t i)
     double way = 0;
     for (int a = 0; a < 3; a++)
         way = fmax(way, fabs((double)*adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_VELOCITY + a)) / 8);
-    return adcgs_fmodel_presence(f, i, 0) > 0.9f && adcgs_fmodel_presence(f, i, 1) > 0.9f && way < STRAYS;
+    return adcgs_fmodel_presence(f, i, 0) > LIVES && adcgs_fmodel_presence(f, i, 1) > LIVES && way < STRAYS;
 }
 
 /**

@@ -10,16 +10,21 @@
 
 #include <math.h>
 
-static const double ALONE = 0.1; /* scene units: size of a single anchor */
+static const double ALONE = 0.1; /* scene units: size of a single anchor; chosen by hand, not measured */
+/* Scene units: minimum half edge of the cube around the points; chosen by hand, not measured. */
+#define CUBE_LEAST 0.5
+#define CUBE_MOST 8 /* scene units: its maximum; chosen by hand, not measured */
+/* Half edge of the cube / distance of the farthest point, so that anchors can grow; chosen by hand, not measured. */
+#define CUBE_MARGIN 1.25
 
-/** Half edge of a cube around the points: at least 0.5, at most 8 scene units. */
+/** Half edge of a cube around the points, scene units. */
 static double cube_half(const adcgs_start_points *c)
 {
-    double half = 0.5;
+    double half = CUBE_LEAST;
     for (uint32_t i = 0; i < c->n; i++)
         for (int a = 0; a < 3; a++)
-            half = fmax(half, 1.25 * fabs(c->x[i][a]));
-    return fmin(half, 8);
+            half = fmax(half, CUBE_MARGIN * fabs(c->x[i][a]));
+    return fmin(half, CUBE_MOST);
 }
 
 void adcgs_set_lifetime(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p)

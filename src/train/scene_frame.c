@@ -9,22 +9,26 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     CAMERAS_MOST = 64,  /* maximum number of training cameras whose median depth is used */
     POINTS_MOST = 2000, /* maximum number of points tested per camera */
     SEEN_LEAST = 8      /* minimum number of visible points for a median depth */
 };
 static const double
-    /* Minimum share of the training cameras that have the focus of their axes in front. */
+    /* Minimum share of the training cameras that have the focus of their axes in front; chosen by hand, not measured. */
     IN_FRONT = 0.75,
     /*
      * Bounds of the focus's depth relative to the median depth of the points that a camera sees, median over cameras. Five
-     * inward captures have 1.04 to 1.21.
+     * inward captures, on which these are calibrated, have 1.04 to 1.21.
      */
     NEAR = 0.4, FAR = 2.5;
-/* Cameras that look outwards are closer to their focus than to anything else. So the unit is at least this share of the depth. */
+/*
+ * Cameras that look outwards are closer to their focus than to anything else. So the unit is at least this share of the depth;
+ * chosen by hand, not measured.
+ */
 static const double UNIT_LEAST = 0.4;
-/* Length of the mean of unit vectors above which cameras share a viewing direction. */
+/* Length of the mean of unit vectors above which cameras share a viewing direction; chosen by hand, not measured. */
 static const double SAME_WAY = 0.3;
 
 /** Median depth along the axis of the points that each camera sees. */

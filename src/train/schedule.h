@@ -14,7 +14,7 @@ void adcgs_train_rates(const adcgs_train_config *config, adcgs_fmodel *f);
 /** Learning rate at a progress in [0,1], from its first and last values. */
 float adcgs_train_rate(const adcgs_train_config *config, float first, float last, double progress);
 
-/** Minimum iterations before pruning of hidden units; networks are not trained enough before. */
+/** Minimum iterations before pruning of hidden units; networks are not trained enough before; chosen by hand, not measured. */
 enum { ADCGS_UNITS_AFTER = 1000 };
 /** True if hidden units are pruned at all. */
 int adcgs_train_prunes_units(const adcgs_train_config *config);

@@ -11,7 +11,7 @@
 
 #include <stdio.h>
 
-#define ADCGS_PRESETS 5
+#define ADCGS_PRESETS 5 /* number of presets; definition */
 
 typedef enum adcgs_setting_kind {
     ADCGS_SETTING_REAL, /**< float */
@@ -33,7 +33,7 @@ typedef enum adcgs_setting_group {
     ADCGS_SETTING_SWITCHES, /**< changed by their own options, not by name */
 } adcgs_setting_group;
 
-/** The effects of a setting. */
+/** The effects of a setting, as bits; definition. */
 enum { ADCGS_AFFECTS_SPEED = 1, ADCGS_AFFECTS_BYTES = 2, ADCGS_AFFECTS_QUALITY = 4, ADCGS_AFFECTS_MEMORY = 8 };
 
 /** From when a setting binds a run. Before, a run may continue from a checkpoint with another value. */
@@ -63,7 +63,7 @@ extern const adcgs_setting_former adcgs_settings_former[];
 /** Names of the presets, NULL-terminated, the fastest first. */
 extern const char *const adcgs_train_presets[];
 
-/** Maximum number of settings with names. */
+/** Maximum number of settings with names; definition, above the rows of the table. */
 #define ADCGS_SETTING_NAMES 120
 /** The names that adcgs_train_set() accepts, NULL-terminated. */
 void adcgs_setting_names(const char *names[ADCGS_SETTING_NAMES + 1]);
@@ -79,7 +79,7 @@ int adcgs_setting_may_be(const adcgs_setting *setting, double value);
 /** True if the value equals the one of the configuration's preset. */
 int adcgs_setting_is_preset(const adcgs_setting *setting, const adcgs_train_config *config);
 
-#define ADCGS_SETTING_TEXT 32
+#define ADCGS_SETTING_TEXT 32 /* bytes of a printed value; arithmetic: nine digits, sign and exponent fit */
 /** Prints a value as its field holds it, with the fewest digits that restore it. */
 const char *adcgs_setting_print(const adcgs_setting *setting, double value, char text[ADCGS_SETTING_TEXT]);
 

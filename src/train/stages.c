@@ -19,6 +19,7 @@
 #include "train/static/unit_prune.h"
 #include "train/train_views.h"
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     WEIGH_AFTER = 300, /* minimum iterations before motion is tested; it is not trained enough before */
     MEANS_EVERY = 100  /* iterations between exact updates of the means for rounding */

@@ -10,13 +10,32 @@
 
 #include <math.h>
 
-#define START_SHARE 0.75          /* of max_anchors: known points lie on surfaces, and growth adds the rest */
-#define MATCHED_SHARE 0.9         /* of the points; the rest are random points where matching found nothing */
-#define MOVING_SHARE 0.25         /* of all points: moving ones; with many more, anchors are too small to find motion */
-#define SPACING_LEAST (1 / 15.0f) /* minimum frame spacing, as share of the clip; bounds the number of lifetimes in a long clip */
-#define MONOCULAR_LIFETIMES 2.7f  /* factor of lifetimes for one moving camera: more views then see an anchor */
-#define POINTS_LOOKED_AT 1000     /* points tested for visibility in any camera */
-#define MOVING_MOST 2000          /* maximum number per frame for lifetimes */
+/* Of max_anchors, since growth adds the rest; calibrated on llff_fern and zju313_15f (doc/log/initialisation.md). */
+#define START_SHARE 0.75
+/* Of the points; the rest are random points where matching found nothing; chosen by hand, not measured. */
+#define MATCHED_SHARE 0.9
+/*
+ * Of all points: moving ones. With many more, anchors are too small to find motion; calibrated on cross80, one seed (same log).
+ */
+#define MOVING_SHARE 0.25
+/* Minimum frame spacing, as share of the clip: bounds the number of lifetimes in a long clip; chosen by hand, not measured. */
+#define SPACING_LEAST (1 / 15.0f)
+/*
+ * Factor of lifetimes for one moving camera, since more views then see an anchor; calibrated on film-cross80
+ * (doc/log/matching.md).
+ */
+#define MONOCULAR_LIFETIMES 2.7f
+#define POINTS_LOOKED_AT 1000 /* points tested for visibility in any camera; chosen by hand, not measured */
+#define MOVING_MOST 2000      /* maximum number per frame for lifetimes; chosen by hand, not measured */
+/* Random points; chosen by hand, not measured, except for CORE_SHARE. */
+#define NEAR_RADIUS 1.2 /* scene units: radius of the volume that the cameras surround */
+#define FAR_RADIUS 4.0  /* scene units: outer radius of the random points beyond it */
+#define FAR_SHARE 0.2   /* of the random points lie beyond the near radius */
+/* Of the points lie in the inner half of the near radius, where all cameras look; calibrated on demo. */
+#define CORE_SHARE 0.5
+#define PLACES_PER_POINT 400ull /* maximum number of random places per wanted point */
+#define SEEN_BY 4               /* one in so many views must see a point */
+#define FAR_SEEN_BY 10          /* the same beyond the near radius */
 
 /* ---- Candidate points ---- */
 
@@ -77,11 +96,6 @@ static void given_points(adcgs_start_points *c, const adcgs_visibility *s, uint3
     }
 }
 
-#define NEAR_RADIUS 1.2 /* scene units: radius of the volume that the cameras surround */
-#define FAR_RADIUS 4.0  /* scene units: outer radius of the random points beyond it */
-#define FAR_SHARE 0.2   /* of the random points lie beyond the near radius */
-#define CORE_SHARE 0.5  /* of the points lie in the inner half of the near radius, where all cameras look */
-
 /** Uniform in a ball, or outside it with a density proportional to distance^-3, like the resolution of images. */
 static void random_place(double x[3], uint64_t seed, uint64_t i)
 {
@@ -108,11 +122,11 @@ static void random_place(double x[3], uint64_t seed, uint64_t i)
 static void random_points(adcgs_start_points *c, const adcgs_visibility *s, const adcgs_stereo *stereo, uint32_t wanted,
                           uint64_t seed)
 {
-    for (uint64_t i = 0; c->n < wanted && i < 400ull * wanted; i++) {
+    for (uint64_t i = 0; c->n < wanted && i < PLACES_PER_POINT * wanted; i++) {
         double x[3];
         random_place(x, seed, i);
         const int far = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] > NEAR_RADIUS * NEAR_RADIUS;
-        const int need = (int)s->n / (far ? 10 : 4) > 1 ? (int)s->n / (far ? 10 : 4) : 1;
+        const int need = (int)s->n / (far ? FAR_SEEN_BY : SEEN_BY) > 1 ? (int)s->n / (far ? FAR_SEEN_BY : SEEN_BY) : 1;
         const adcgs_point_visibility g = adcgs_visibility_of(s, x);
         if (g.seen < need || g.covered * 2 < g.seen || adcgs_stereo_is_known(stereo, x))
             continue;
@@ -148,7 +162,7 @@ static float middle_frame_time(const adcgs_stereo *s)
     return best;
 }
 
-/** Kinds of moving points: part of a rigid body, independent, or on a static surface. */
+/** Kinds of moving points, definition: part of a rigid body, independent, or on a static surface. */
 enum { OF_BODY, BY_ITSELF, IN_PLACE };
 
 static int kind_of(const adcgs_stereo_point *p)

@@ -9,7 +9,7 @@
 #include "init/stereo.h"
 #include "train/train_config.h"
 
-/** Minimum number of points that count as a scene's points. */
+/** Minimum number of points that count as a scene's points; chosen by hand, not measured. */
 enum { ADCGS_POINTS_LEAST = 16 };
 
 typedef struct adcgs_start_points {

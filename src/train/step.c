@@ -9,7 +9,18 @@
 
 #include <math.h>
 
-enum { CHECK_EVERY = 10 };
+enum {
+    CHECK_EVERY = 10,  /* iterations between exact widenings of quantiser steps; chosen by hand, not measured */
+    ADAM_PIECE = 16384 /* values of a job; chosen by hand, not measured */
+};
+#define ADAM_BETA1 0.9f   /* decay of the mean gradient; literature (Kingma and Ba 2015) */
+#define ADAM_BETA2 0.999f /* decay of the mean square; likewise; 0.99 loses 0.1 dB on demo (doc/log/training.md) */
+/* Decays of the running means, over the first EARLY iterations and later; chosen by hand, not measured. */
+#define KEEP_EARLY 0.9
+#define KEEP 0.99
+#define EARLY 100      /* iterations; chosen by hand, not measured */
+#define BITS_KEEP 0.95 /* decay of the running mean of bits; chosen by hand, not measured */
+#define BITS_NEW 0.05  /* 1 - BITS_KEEP */
 
 static int is_network(int group)
 {
@@ -21,8 +32,6 @@ typedef struct adam_job {
     int group;
     float lr, c1, c2;
 } adam_job;
-
-enum { ADAM_PIECE = 16384 };
 
 static void adam_piece(void *arg, int i, int thread)
 {
@@ -101,7 +110,7 @@ static void update(adcgs_trainer *t, double progress)
         if (!begins(p, i))
             continue;
         const float lr = t->lr_scale * adcgs_train_rate(&t->config, p->lr0, p->lr1, progress), n = (float)++p->steps;
-        adam_job job = {t, i, lr, 1 / (1 - powf(0.9f, n)), 1 / (1 - powf(0.999f, n))};
+        adam_job job = {t, i, lr, 1 / (1 - powf(ADAM_BETA1, n)), 1 / (1 - powf(ADAM_BETA2, n))};
         adcgs_pool_run(p->n > ADAM_PIECE ? t->pool : NULL, adam_piece, &job, (int)((p->n + ADAM_PIECE - 1) / ADAM_PIECE));
     }
     if (t->rounding && !t->frozen)
@@ -125,7 +134,7 @@ static int averages(const adcgs_trainer *t, double progress)
 /** Updates running means of the view passes' results, over few iterations at first, over many later. */
 static void note_means(adcgs_trainer *t, int rated)
 {
-    const double keep = !t->iteration ? 0 : t->iteration < 100 ? 0.9 : 0.99;
+    const double keep = !t->iteration ? 0 : t->iteration < EARLY ? KEEP_EARLY : KEEP;
     adcgs_view_result mean = {.loss = 0};
     for (uint32_t i = 0; i < t->config.batch; i++) {
         const adcgs_view_result *seen = &t->batch.results[i];
@@ -138,7 +147,7 @@ static void note_means(adcgs_trainer *t, int rated)
     t->mean_mse = keep * t->mean_mse + (1 - keep) * mean.mse;
     t->least_mse = t->iteration ? fmin(t->least_mse, t->mean_mse) : t->mean_mse;
     for (int i = 0; rated && i < ADCGS_GROUPS; i++)
-        t->mean_bits[i] = t->mean_bits[i] > 0 ? 0.95 * t->mean_bits[i] + 0.05 * mean.bits[i] : mean.bits[i];
+        t->mean_bits[i] = t->mean_bits[i] > 0 ? BITS_KEEP * t->mean_bits[i] + BITS_NEW * mean.bits[i] : mean.bits[i];
 }
 
 adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *error)

@@ -4,8 +4,12 @@
 
 #include <math.h>
 
-#define KEEP 0.98    /* decay of the running mean of an iteration's cost */
-#define OVERHEAD 0.2 /* share of an iteration at full resolution that is independent of pixels; until two levels are measured */
+#define KEEP 0.98 /* decay of the running mean of an iteration's cost; chosen by hand, not measured */
+/*
+ * Share of an iteration at full resolution that is independent of pixels; until two levels are measured; chosen by hand, not
+ * measured.
+ */
+#define OVERHEAD 0.2
 
 int adcgs_coarse_divide(const adcgs_train_config *c, double progress)
 {

@@ -8,7 +8,7 @@
 
 #include "train/schedule.h"
 
-enum { ADCGS_TIME_LEFT_LEVELS = 3 };
+enum { ADCGS_TIME_LEFT_LEVELS = 3 }; /* full, half and quarter size; definition */
 
 typedef struct adcgs_time_left {
     double cost[ADCGS_TIME_LEFT_LEVELS]; /**< recent seconds per iteration at full, half and quarter resolution; 0: unknown */

@@ -16,6 +16,7 @@ typedef enum adcgs_train_target {
     ADCGS_TARGET_PSNR, /**< dB, mean over the training views */
 } adcgs_train_target;
 
+/* Bounds of valid targets, bytes, dB and seconds; definition, far from any sensible value. */
 #define ADCGS_TARGET_SIZE_MIN 1.0
 #define ADCGS_TARGET_SIZE_MAX 1e12
 #define ADCGS_TARGET_PSNR_MIN 5.0

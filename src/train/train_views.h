@@ -31,7 +31,7 @@ void adcgs_view_crop(adcgs_view *view, int x, int y, int width, int height);
 adcgs_status adcgs_trainer_loss_crop(adcgs_trainer *trainer, uint32_t view, const adcgs_view *crop, adcgs_loss_value *value,
                                      adcgs_error *error);
 
-/** In place of a training view: the scene's own background, as in a decoded frame. */
+/** In place of a training view: the scene's own background, as in a decoded frame; definition. */
 #define ADCGS_MEAN_LIGHT UINT32_MAX
 
 /**

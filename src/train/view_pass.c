@@ -6,9 +6,9 @@
 #include "train/rate/tier_assignment.h"
 #include "train/train_views.h"
 
-/* Of the run: earlier renders are too inaccurate for gains. */
+/* Share of the run: earlier renders are too inaccurate for gains; chosen by hand, not measured. */
 static const double EXPOSURE_FROM = 0.02;
-/* View passes ahead for which images are prefetched. */
+/* View passes ahead for which images are prefetched; chosen by hand, not measured. */
 enum { PICTURES_AHEAD = 8 };
 
 int adcgs_view_pass_has_rate(const adcgs_trainer *t, double progress)

@@ -7,6 +7,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Log of scale: a new anchor has shorter offsets than its source; chosen by hand, not measured. */
+#define OFFSETS_SMALLER 0.6f
+#define SHAPES_SMALLER 0.4f /* log of scale: and smaller primitives; chosen by hand, not measured */
+/* Sum of presence over views, below which nothing is known of an anchor; chosen by hand, not measured. */
+#define PRESENCE_LEAST 0.25f
+
 void adcgs_anchor_set_clear(adcgs_anchor_set *s)
 {
     adcgs_free(NULL, s->pos);
@@ -53,15 +59,13 @@ adcgs_status adcgs_anchor_set_adopt(adcgs_trainer *t, adcgs_anchor_set *s, adcgs
         status = adcgs_fmodel_regroup(t->f, (const uint32_t(*)[3])s->pos, source, fresh, s->n, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < s->n; i++)
         for (int a = 0; fresh[i] && a < 3; a++) {
-            *adcgs_fmodel_at(t->f, ADCGS_P_SIGMA, i, a) -= 0.6f;
-            *adcgs_fmodel_at(t->f, ADCGS_P_SIGMA, i, 3 + a) -= 0.4f;
+            *adcgs_fmodel_at(t->f, ADCGS_P_SIGMA, i, a) -= OFFSETS_SMALLER;
+            *adcgs_fmodel_at(t->f, ADCGS_P_SIGMA, i, 3 + a) -= SHAPES_SMALLER;
         }
     adcgs_free(NULL, source);
     adcgs_free(NULL, fresh);
     return status == ADCGS_OK ? adcgs_trainer_resize(t, error) : status;
 }
-
-#define PRESENCE_LEAST 0.25f /* sum of presence over looks, below which nothing is known of an anchor */
 
 int adcgs_anchor_is_idle(const adcgs_trainer *t, uint32_t anchor, double min_pixels)
 {

@@ -14,6 +14,16 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Both per densification; chosen by hand, not measured. */
+enum {
+    MISSING_MOST = 512,       /* maximum number of positions from residuals */
+    TEMPORAL_POINTS_MAX = 256 /* maximum number of matched points */
+};
+/* Share of the densification period after which the budget is whole; chosen by hand, not measured. */
+#define BUDGET_BY 0.8
+/* Rendered weight per view, in pixels, below which an anchor is idle; chosen by hand, not measured. */
+#define IDLE_PIXELS 0.2
+
 /* ---- A set of grid cells ---- */
 
 typedef struct cells {
@@ -83,11 +93,6 @@ static void add_anchors(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, 
 }
 
 /* ---- Growth from residuals ---- */
-
-enum {
-    MISSING_MOST = 512,       /* maximum number of positions from residuals */
-    TEMPORAL_POINTS_MAX = 256 /* maximum number of matched points */
-};
 
 static uint32_t nearest_anchor(const adcgs_fmodel *f, const uint32_t pos[3])
 {
@@ -194,7 +199,7 @@ static void init_temporal_anchors(adcgs_trainer *t, const adcgs_stereo_point *co
 
 double adcgs_densify_budget(const adcgs_train_config *c, double progress)
 {
-    const double ramp = fmin(1, (progress - c->densify_start) / (0.8 * (c->densify_until - c->densify_start)));
+    const double ramp = fmin(1, (progress - c->densify_start) / (BUDGET_BY * (c->densify_until - c->densify_start)));
     const double from = ADCGS_MIN(c->start_anchors, c->max_anchors);
     return from + (c->max_anchors - from) * ramp;
 }
@@ -237,7 +242,7 @@ static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_
 static void keep_anchors(adcgs_trainer *t, workspace *w)
 {
     for (uint32_t i = 0; i < t->f->n; i++)
-        if (t->f->trainable[i] == 0 || !adcgs_anchor_is_idle(t, i, 0.2)) { /* frozen anchors cost nothing */
+        if (t->f->trainable[i] == 0 || !adcgs_anchor_is_idle(t, i, IDLE_PIXELS)) { /* frozen anchors cost nothing */
             cells_add(&w->occupied, t->f->pos[i]);
             adcgs_anchor_set_add(&w->next, t->f->pos[i], i, 0);
         }

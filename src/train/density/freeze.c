@@ -5,7 +5,7 @@
 #include "train/rate/curvature.h"
 #include "train/rate/levels.h"
 
-#define HELD 1e20f /* loss per squared change of a value: more than any bits are worth */
+#define HELD 1e20f /* loss per squared change of a value: more than any bits are worth; arithmetic */
 
 /** Fixes the levels of frozen anchors, which must not change. */
 static void hold_settled(const adcgs_fmodel *f, float *const curvature[ADCGS_P_ANCHOR])

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     VIEWS_MOST = 32,   /* maximum number of views of the frame */
     VIEWS_LEAST = 3,   /* minimum number of views of the frame */
@@ -14,8 +15,12 @@ enum {
     DEPTHS = 256       /* depth steps of a ray */
 };
 enum {
-    SLACK = 3,      /* depth steps within which neighbours agree */
-    VOTES_LEAST = 3 /* minimum number of agreeing neighbours if only one other camera sees the point */
+    SLACK = 3, /* depth steps within which neighbours agree */
+    /*
+     * Minimum number of agreeing neighbours if only one other camera sees the point; calibrated on zju
+     * (doc/log/densification.md).
+     */
+    VOTES_LEAST = 3
 };
 #define DIFFERENCE 0.08f /* minimum residual of a pixel whose ray is searched */
 #define NEAREST 0.25f    /* scene units: minimum depth of a ray */

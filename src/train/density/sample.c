@@ -9,7 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/** Views for judging networks. At full size only a quarter of each view is used, because a search judges hundreds of times. */
+/**
+ * Views for judging networks. At full size only a quarter of each view is used, because a search judges hundreds of times
+ * (doc/log/speed.md, "Searches on samples"). Chosen by hand, not measured.
+ */
 enum { NETWORK_VIEWS = 16 };
 
 /** Loss of a view whose primitives are in the pass, or of one of its quarters if quarter is 0 to 3. */

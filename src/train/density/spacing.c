@@ -9,6 +9,9 @@
 
 #include <math.h>
 
+/*
+ * NEAREST: literature, the initial scale of 3D Gaussian splatting (Kerbl et al. 2023). The others: chosen by hand, not measured.
+ */
 enum {
     NEAREST = 3, /* nearest voxels whose mean distance is wanted */
     ABOUT = 4,   /* neighbours in Morton order tested per side for a first bound */

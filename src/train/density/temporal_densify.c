@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     FRAMES = 2,     /* frames per call */
     VIEWS_MOST = 8, /* maximum number of views of a frame */

@@ -8,15 +8,22 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     TIMES = 3,        /* number of tests in a run */
     FRAMES_MAX = 16,  /* maximum number of frames that are tested */
     CAMERAS = 4,      /* maximum number of views of each */
     ANCHOR_BITS = 180 /* expected bits of an anchor that is sent again */
 };
-#define VISIBLE 0.02f /* colour difference: minimum error of an anchor's contribution */
-#define SEEN 2.0f     /* pixels: minimum coverage over all views of a frame, below which they are ignored */
-#define WORTH 4.0     /* ratio of the actual decrease of the loss to the decrease of squared errors */
+/*
+ * Colour difference: minimum error of an anchor's contribution; calibrated on a turning box and a static scene
+ * (doc/log/segments.md).
+ */
+#define VISIBLE 0.02f
+/* Pixels: coverage over all views of a frame, below which they are ignored; chosen by hand, not measured. */
+#define SEEN 2.0f
+/* Ratio of the actual decrease of the loss to the decrease of squared errors; calibrated on the same scenes. */
+#define WORTH 4.0
 
 /** Residuals and coverage of each anchor in some frames, the earliest first. */
 typedef struct frame_errors {

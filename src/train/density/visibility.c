@@ -8,6 +8,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Difference from the background, summed over channels, of an empty pixel with alpha; chosen by hand, not measured. */
+#define TRANSPARENT 0.02
+
 void adcgs_visibility_clear(adcgs_visibility *s)
 {
     for (uint32_t i = 0; i < s->n; i++)
@@ -51,7 +54,7 @@ adcgs_point_visibility adcgs_visibility_of(const adcgs_visibility *s, const doub
         for (int a = 0; a < 3; a++)
             off += fabs(s->rgb[i][(size_t)a * plane + at] - s->scene->background[a]);
         g.seen++;
-        if (s->scene->has_alpha && off < 0.02)
+        if (s->scene->has_alpha && off < TRANSPARENT)
             continue;
         g.covered++;
         for (int a = 0; a < 3; a++)

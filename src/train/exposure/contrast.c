@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-enum { PICTURES_MOST = 64 };
-/** Bounds of lambda's factor; images of one colour still need a positive lambda. */
+enum { PICTURES_MOST = 64 }; /* maximum number of images for the contrast; chosen by hand, not measured */
+/** Bounds of lambda's factor; images of one colour still need a positive lambda. Ratios, chosen by hand, not measured. */
 static const double LEAST = 0.1, MOST = 4;
 
 adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_error *error)

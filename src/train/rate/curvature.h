@@ -5,7 +5,7 @@
 
 #include "train/state/state.h"
 
-/** Maximum number of training views used. */
+/** Maximum number of training views used; chosen by hand, not measured. */
 enum { ADCGS_CURVATURE_VIEWS = 64 };
 
 /**

@@ -10,21 +10,32 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     STEP_EVERY = 10,   /* iterations between updates of lambda */
     SAMPLE_VIEWS = 24, /* training views of a PSNR measurement */
     LAMBDA_REACH = 100 /* maximum factor between lambda and its initial value, in both directions */
 };
-#define MEASURE_EVERY 0.03     /* fraction of the run between measurements */
-#define SIZE_LEAD 1.03         /* size aimed at before the freeze / target size; RDOQ saves the rest at less loss than lambda */
+#define MEASURE_EVERY 0.03 /* fraction of the run between measurements */
+/*
+ * Size aimed at before the freeze / target size; calibrated on demo (doc/log/rate.md): RDOQ saves the rest at less loss than
+ * lambda.
+ */
+#define SIZE_LEAD 1.03
 #define PSNR_LEAD 0.1          /* dB above the target, so that RDOQ has a margin */
 #define LATTICES_LEAVE 0.8     /* share of the networks' bytes that remains when lattices are final */
 #define UNITS_LEAVE 0.4        /* share that remains after the first pruning of hidden units */
 #define UNITS_LEAVE_AGAIN 0.75 /* share that remains after the second one */
 #define PRUNE_FROM 0.05        /* log of bytes over room: minimum for pruning anchors */
 #define PRUNE_LEAST 0.8        /* minimum share of the anchors that one pruning keeps */
-enum { PRUNE_AFTER = 50 };     /* minimum iterations of statistics before pruning */
-/* Gains of the controller. Bytes vary with about the -0.3rd power of lambda, and need a tenth of the run to follow it. */
+/* Share of its budget from which the number of anchors is expected to keep growing. */
+#define FOLLOWS 0.9
+#define ROOM_LEAST 0.05    /* share of the target: minimum that the features are assumed to have */
+enum { PRUNE_AFTER = 50 }; /* minimum iterations of statistics before pruning */
+/*
+ * Gains of the controller. Bytes vary with about the -0.3rd power of lambda, and need a tenth of the run to follow it; chosen by
+ * hand, not measured.
+ */
 #define GAIN_CHANGE 3.0 /* on the change of the error, initially the whole error */
 #define GAIN_ERROR 30.0 /* on the error integrated over the run */
 #define GAIN_PSNR 0.3   /* error per dB */
@@ -67,13 +78,13 @@ static double growth_ahead(const adcgs_trainer *t, double progress)
 {
     const double budget = adcgs_densify_budget(&t->config, progress);
     const double whole = t->config.max_anchors;
-    return progress < t->config.densify_until && t->f->n > 0.9 * budget ? fmax(1, whole / t->f->n) : 1;
+    return progress < t->config.densify_until && t->f->n > FOLLOWS * budget ? fmax(1, whole / t->f->n) : 1;
 }
 
 /** Logarithm of the features' bytes over the bytes available for them. */
 static double size_error(const adcgs_trainer *t, double progress)
 {
-    const double aim = SIZE_LEAD * t->config.target_value, room = fmax(aim - t->rate_control.fixed, 0.05 * aim);
+    const double aim = SIZE_LEAD * t->config.target_value, room = fmax(aim - t->rate_control.fixed, ROOM_LEAST * aim);
     return log(fmax(estimate(t) * t->rate_control.ratio * growth_ahead(t, progress), 1) / room);
 }
 

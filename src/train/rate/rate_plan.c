@@ -4,12 +4,15 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
-    OTHER_BYTES = 1700, /* upper estimate for headers, cameras and metadata */
-    ANCHOR_BITS = 220,  /* per anchor at a small lambda; a large size allows more anchors than a preset by it */
-    FEWEST_BITS = 50,   /* per anchor at a large lambda; a small size allows fewer anchors than a preset by it */
-    ANCHORS_LEAST = 16,
-    WIDTH_LEAST = 8
+    OTHER_BYTES = 1700, /* upper estimate for headers, cameras and metadata; arithmetic */
+    /* Per anchor at a small lambda, calibrated on demo and the robot; a large size allows more anchors than a preset. */
+    ANCHOR_BITS = 220,
+    /* Per anchor at a large lambda, calibrated on demo (doc/log/rate.md); a small size allows fewer anchors. */
+    FEWEST_BITS = 50,
+    ANCHORS_LEAST = 16, /* minimum number of anchors */
+    WIDTH_LEAST = 8     /* minimum units of a hidden layer */
 };
 #define NETWORKS_SHARE 0.25 /* plausible share of the networks in a size */
 #define UNITS_STAY 0.3      /* share of the weights that remain after pruning of hidden units */
@@ -43,6 +46,7 @@ static adcgs_status plan_networks(adcgs_train_config *c, double *bytes, adcgs_er
 {
     const double share = NETWORKS_SHARE * c->target_value;
     const double room = c->own_anchors ? c->target_value - OTHER_BYTES - (double)c->max_anchors * ANCHOR_BITS / 8 : 0;
+    /* Widths tried, relative to the preset; chosen by hand, not measured. */
     static const double factors[] = {1, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125};
     const adcgs_shape wide = c->shape;
     for (size_t i = 0; i < ADCGS_COUNTOF(factors); i++) {

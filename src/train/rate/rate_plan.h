@@ -5,7 +5,7 @@
 
 #include "train/schedule.h"
 
-/** Approximate bits of a weight in a stream. */
+/** Bits of a weight in a stream, approximately; chosen by hand, not measured. */
 #define ADCGS_WEIGHT_BITS 7
 
 /**

@@ -7,6 +7,10 @@
 
 #include <math.h>
 
+/*
+ * Origin, unless a line states one: chosen by hand, not measured. The search as a whole: doc/log/rate.md, "A target size with one
+ * lambda".
+ */
 #define LOOK_AFTER 0.06   /* fraction of the run from prune_at to the first measurement of bytes */
 #define VERDICT_AFTER 0.1 /* fraction of the run from prune_at to the second measurement */
 /** Predicted further change of the bytes, relative to the change between the measurements, which grows with lambda. */
@@ -18,7 +22,7 @@
 #define POWER_MOST 0.6   /* maximum of the power from two tries */
 #define MISSED_POWER 1.0 /* approximate dB lost when lambda grows by a factor of e */
 #define MISSED_DOUBT 0.1 /* dB added to a shortfall at the end */
-enum { TRIES = 4 };
+enum { TRIES = 4 };      /* lambdas of a search, the first included */
 
 static double verdict_at(const adcgs_train_config *c)
 {

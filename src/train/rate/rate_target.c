@@ -10,22 +10,23 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
-    TRIES = 16,
-    PRUNINGS = 16,
-    REACH = 8 /* factor between tried strengths while only one bound is known */
+    TRIES = 16,    /* evaluations of a search */
+    PRUNINGS = 16, /* maximum number of prunings */
+    REACH = 8      /* factor between tried strengths while only one bound is known */
 };
-#define STRENGTH_FIRST 1.0
+#define STRENGTH_FIRST 1.0      /* RDOQ strength tried first: the bits' price by lambda itself */
 #define STRENGTH_MOST_SIZE 64.0 /* beyond it, RDOQ discards far more than it saves, and pruning anchors is better */
-#define STRENGTH_MOST_PSNR 1e6
-#define PRUNE_LEAST 0.5  /* minimum share of the anchors that one pruning keeps */
-#define PRUNE_MOST 0.98  /* maximum share of the anchors that one pruning keeps */
-#define SIZE_MARGIN 0.01 /* share of the size left free at the freeze; networks are still trained and may grow */
-#define PSNR_GAIN 0.1    /* dB: approximate gain of the networks after the freeze */
-#define PSNR_NEAR 0.03   /* dB: tolerance of the target */
-#define STEPS_REACH 1.4  /* maximum |log of the factor| by which steps become finer */
-#define STEPS_FIRST 0.2  /* the first one tried */
-enum { STEPS_TRIES = 8 };
+#define STRENGTH_MOST_PSNR 1e6  /* the same for a target PSNR, which has no other means */
+#define PRUNE_LEAST 0.5         /* minimum share of the anchors that one pruning keeps */
+#define PRUNE_MOST 0.98         /* maximum share of the anchors that one pruning keeps */
+#define SIZE_MARGIN 0.01        /* share of the size left free at the freeze; networks are still trained and may grow */
+#define PSNR_GAIN 0.1           /* dB: approximate gain of the networks after the freeze */
+#define PSNR_NEAR 0.03          /* dB: tolerance of the target */
+#define STEPS_REACH 1.4         /* maximum |log of the factor| by which steps become finer */
+#define STEPS_FIRST 0.2         /* the first one tried */
+enum { STEPS_TRIES = 8 };       /* evaluations of the search for finer steps */
 
 /** The accepted range of values [low, high]. A higher strength gives lower values, of bytes and of dB. */
 typedef struct window {

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     VIEWS = 16,       /* maximum number of views measured */
     PIXELS = 1 << 16, /* maximum pixels of each */

@@ -7,7 +7,15 @@
 
 #include <math.h>
 
-enum { PATIENCE = 2 }; /* steps without a gain at which the search stops */
+enum { PATIENCE = 2 }; /* steps without a gain at which the search stops; chosen by hand, not measured */
+
+/*
+ * Steps per RMS of a layer's weights, where the search begins; chosen by hand, not measured. Output layers are more sensitive,
+ * above all those of motion.
+ */
+#define STEPS_HIDDEN 16
+#define STEPS_OUTPUT 64
+#define STEPS_MOTION 1024 /* outputs are positions */
 
 /* ---- Bits ---- */
 
@@ -96,13 +104,10 @@ static adcgs_status choose_layer(const search *s, int from, int8_t *chosen, adcg
     return ADCGS_OK;
 }
 
-/**
- * Approximate steps per RMS of a layer's weights. Output layers are more sensitive, above all those of motion, which are
- * positions.
- */
+/** Approximate steps per RMS of a layer's weights. */
 static double nominal_steps(int group, int is_last)
 {
-    return !is_last ? 16 : group == ADCGS_P_OMEGA ? 1024 : 64;
+    return !is_last ? STEPS_HIDDEN : group == ADCGS_P_OMEGA ? STEPS_MOTION : STEPS_OUTPUT;
 }
 
 static int nominal(const adcgs_fmodel *f, int group, int layer)

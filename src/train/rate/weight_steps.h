@@ -8,7 +8,10 @@
 
 #include "train/state/state.h"
 
-/** Range of a lattice's exponent: 2^-e is the distance of its points. Entropy networks: at most ADCGS_E24_BITS. */
+/**
+ * Range of a lattice's exponent: 2^-e is the distance of its points. Entropy networks: at most ADCGS_E24_BITS. Bits, definition
+ * of the format.
+ */
 enum { ADCGS_WEIGHT_STEP_MIN = 0, ADCGS_WEIGHT_STEP_MAX = 16 };
 
 /** Bits that the weight coder spends on a layer's weights and biases, rounded to 2^-e. p: the network's parameters. */

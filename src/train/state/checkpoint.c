@@ -96,7 +96,10 @@ adcgs_status adcgs_trainer_load(adcgs_trainer *t, const char *path, adcgs_error 
     return status;
 }
 
-/* Bytes before the text of trials: magic, content, format, views, four parts of the scene, previous segment, target. */
+/*
+ * Bytes before the text of trials: magic, content, format, views, four parts of the scene, previous segment, target; definition
+ * of the format.
+ */
 enum { TRIALS_AT = sizeof magic + 16 + 8 + 8 + 4 * 4 + 16 + 1 + 4 + 8 };
 
 adcgs_status adcgs_checkpoint_adopt(adcgs_train_config *config, const char *path, adcgs_error *error)

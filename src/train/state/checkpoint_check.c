@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { EXPONENT_MAX = 40 }; /* bound of the stream syntax */
+enum { EXPONENT_MAX = 40 }; /* bits: bound of the stream syntax (spec), definition */
 
 const char *adcgs_checkpoint_check_places(const adcgs_fmodel *f, const uint32_t (*pos)[3], uint32_t n)
 {

@@ -10,7 +10,7 @@
 
 #include <stdio.h>
 
-/** Format number; the first number that the walk visits, as 64 bits. */
+/** Format number; the first number that the walk visits, as 64 bits; definition, one more with each change. */
 enum { ADCGS_CHECKPOINT_FORMAT = 33 };
 
 typedef struct adcgs_checkpoint_walk {

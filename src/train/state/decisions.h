@@ -30,6 +30,7 @@ typedef struct adcgs_decision {
     double value;
 } adcgs_decision;
 
+/* Number of values, definition; bytes of their text, arithmetic: names and numbers of all of them fit. */
 enum { ADCGS_DECISIONS = 14, ADCGS_DECISIONS_TEXT = 320 };
 
 void adcgs_decisions_list(const adcgs_decisions *decisions, adcgs_decision list[ADCGS_DECISIONS]);

@@ -14,7 +14,8 @@
 
 #include <math.h>
 
-#define SQUARE_ALONE 0.5f /* maximum l2_share if one camera sees each frame */
+/* Maximum l2_share if one camera sees each frame; calibrated on synth_robot_dnerf and nrnerf_hand (doc/log/training.md). */
+#define SQUARE_ALONE 0.5f
 
 static size_t slots_of(const adcgs_fmodel *f)
 {

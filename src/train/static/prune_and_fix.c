@@ -9,13 +9,32 @@
 
 #include <math.h>
 
+/* Origin: chosen by hand, not measured. */
 enum {
     DECIDE_TIMES = 16, /* times at which motion is measured */
     DECIDE_VIEWS = 32  /* maximum number of views for measuring the loss */
 };
-#define FAINT_SHARE 0.1      /* of the rendered weight: maximum of the faint primitives dropped */
-#define FAINT_MEAN 0.4       /* mean opacity of rendered primitives below which a scene counts as faint */
-#define CHANGING_SHARE 0.01F /* of an anchor's rendered weight: maximum at changing pixels, if the anchor is static */
+/*
+ * Of the rendered weight: maximum of the faint primitives dropped; calibrated on zju, the robots and the demo
+ * (doc/log/densification.md).
+ */
+#define FAINT_SHARE 0.1
+/* Mean opacity of rendered primitives below which a scene counts as faint; calibrated on five scenes (doc/log/static.md). */
+#define FAINT_MEAN 0.4
+/* Of an anchor's rendered weight: maximum at changing pixels of a static one; calibrated on seven scenes (doc/log/static.md). */
+#define CHANGING_SHARE 0.01F
+#define MOVED 0.5f /* pixels: motion of an effect of 1; chosen by hand, not measured */
+/* Colour difference, values of 0 to 1, of an effect of 1; chosen by hand, not measured. */
+#define TINTED 0.03f
+#define FADED 0.03f /* difference of opacity of an effect of 1; chosen by hand, not measured */
+/* Ratio of losses that motion gains by fitting the noise of images; chosen by hand, not measured. */
+#define NOISE_FIT 1.01
+/* Bits of a weight; calibrated on boxes that move by pixels (doc/log/static.md, "The price of the motion networks"). */
+#define WEIGHT_BITS 7
+/* One in so many hidden weights stays where little moves; calibrated on the same scenes. */
+#define UNITS_ONE_IN 10
+/* Pixels per view in which the anchor is: minimum rendered weight of a primitive; chosen by hand, not measured. */
+#define UNSEEN_SHARE 0.05f
 
 /**
  * Weighted mean opacity of the rendered primitives relative to FAINT_MEAN, at most 1. In a scene of faint layers each layer has
@@ -36,8 +55,8 @@ static float usual_opacity(const adcgs_trainer *t)
 }
 
 /**
- * Largest effect of time on each anchor's primitives. For an opaque primitive in an opaque scene, 1 is half a pixel of motion,
- * 0.03 of colour, or 0.03 of opacity. Smaller effects look like noise and cost network evaluations in every frame.
+ * Largest effect of time on each anchor's primitives. For an opaque primitive in an opaque scene, 1 is MOVED pixels of
+ * motion, TINTED of colour, or FADED of opacity. Smaller effects look like noise and cost network evaluations in every frame.
  */
 static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error *error)
 {
@@ -65,7 +84,7 @@ static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error 
                 tint = fmaxf(tint, fabsf(now[(ADCGS_ROW_COLOUR + a) * slots + i] - still[(ADCGS_ROW_COLOUR + a) * slots + i]));
             }
             const float fade = fabsf(now[ADCGS_ROW_OPACITY * slots + i] - still[ADCGS_ROW_OPACITY * slots + i]);
-            const float here = fmaxf(fmaxf(o * shift / (0.5f * pixel), o * tint / 0.03f), fade / 0.03f);
+            const float here = fmaxf(fmaxf(o * shift / (MOVED * pixel), o * tint / TINTED), fade / FADED);
             effect[anchor] = fmaxf(effect[anchor], here / usual);
         }
     }
@@ -81,14 +100,11 @@ adcgs_status adcgs_test_motion_gain(adcgs_trainer *t, adcgs_error *error)
         return ADCGS_OK;
     ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 0, &stopped, error));
     ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 1, &moving, error));
-    /*
-     * Seven bits per weight. Unit pruning later leaves a tenth of the hidden weights where little moves. Networks can gain a
-     * hundredth of the loss by fitting the noise of each image.
-     */
-    const size_t weights = (f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n) / 10 + f->mlp[ADCGS_P_TIME].n;
+    /* Unit pruning later leaves few of the hidden weights where little moves. */
+    const size_t weights = (f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n) / UNITS_ONE_IN + f->mlp[ADCGS_P_TIME].n;
     t->decisions.loss_still = stopped;
     t->decisions.loss_moving = moving;
-    if (stopped > 1.01 * moving + adcgs_cost_of_bit(t) * 7 * (double)weights)
+    if (stopped > NOISE_FIT * moving + adcgs_cost_of_bit(t) * WEIGHT_BITS * (double)weights)
         return ADCGS_OK;
     memset(f->moving, 0, (size_t)f->groups * ADCGS_LANES * sizeof *f->moving);
     return ADCGS_OK;
@@ -165,7 +181,7 @@ static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
             continue;
         const float there = t->stats.presence[anchor], opacity = t->stats.opacity[i];
         drawn += (double)t->stats.weight[i];
-        if (t->stats.weight[i] < 0.05f * t->stats.in_view[anchor]) {
+        if (t->stats.weight[i] < UNSEEN_SHARE * t->stats.in_view[anchor]) {
             f->keep[i] = 0;
             t->decisions.unseen++;
         } else if (opacity < t->config.min_mean_opacity * there)

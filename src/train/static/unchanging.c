@@ -7,11 +7,12 @@
 #include "train/density/anchor_set.h"
 #include "train/train_views.h"
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     PICTURES_LEAST = 4, /* minimum number of images of a camera for a result */
     PICTURES_DRAWN = 4  /* number of images rendered per camera */
 };
-/* Invisible changes, in standard deviations of all images' values. */
+/* Invisible changes, in standard deviations of all images' values; chosen by hand, not measured. */
 #define UNSEEN 0.2
 
 /** Marks the pixels that change in the images of a camera: [height][width]. view: its n views in ascending time. */

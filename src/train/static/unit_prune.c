@@ -9,17 +9,25 @@
 
 #include <math.h>
 
+/* Origin: chosen by hand, not measured; WIDTH_MAX by the format. */
 enum {
     SAMPLES = 4096, /* of a network's activations */
     WIDTH_MAX = ADCGS_NET_WIDTH_MAX
 };
 
-/** Approximate bits of a weight on its lattice. */
+/** Bits of a weight on its lattice, approximately; chosen by hand, not measured. */
 #define WEIGHT_BITS 5.0
 
-/* Shares of the distortion that remain after the rest of the run has compensated. */
+/*
+ * Shares of the distortion that remain after the rest of the run has compensated; calibrated on synth_robot_dnerf and demo
+ * (doc/log/networks.md, "Removal that relies on later training").
+ */
 #define LASTING 0.1      /* of the image loss */
-#define LASTING_BITS 0.4 /* of the features' bits */
+#define LASTING_BITS 0.4 /* of the features' bits; chosen by hand, not measured */
+
+#define AT_A_TIME 16 /* one in so many units goes in a step of the search; chosen by hand, not measured */
+/* The search ends when one in so many units has gone without a gain; chosen by hand, not measured. */
+#define VAIN 4
 
 /* ---- Activations at samples ---- */
 
@@ -295,7 +303,7 @@ static adcgs_status slim_network(slimming *s, adcgs_error *error)
 {
     adcgs_fmodel *f = s->t->f;
     const adcgs_mlp *m = &f->mlp[s->group];
-    const int step = m->entropy ? 1 : ADCGS_MAX(1, m->width / 16), patience = ADCGS_MAX(2, m->width / 4);
+    const int step = m->entropy ? 1 : ADCGS_MAX(1, m->width / AT_A_TIME), patience = ADCGS_MAX(2, m->width / VAIN);
     int better, since = 0;
     memset(s->keep, 1, sizeof s->keep);
     s->width = s->left = m->width;

@@ -9,8 +9,9 @@
 
 #include "base/base.h"
 
-#define ADCGS_TREE_MOST 256 /* places */
-#define ADCGS_TREE_PARTS 17 /* maximum number of parts of a range, plus one */
+#define ADCGS_TREE_MOST 256 /* places: maximum views of a batch; definition */
+/* Maximum number of parts of a range, plus one; arithmetic: two for each power of two of the places. */
+#define ADCGS_TREE_PARTS 17
 
 /** The sum over places first to first + n - 1. */
 typedef struct adcgs_tree_part {

@@ -12,6 +12,7 @@ static void leave_out_anchors(adcgs_train_config *c)
     c->params.n_fg = 0;
 }
 
+/* Bits of the parts that a run leaves out; definition. */
 enum { COARSE = 1, FINE = 2, RATE = 4, DENSIFICATION = 8, ANCHORS = 16, WEIGHT_STEPS = 32, REMOVAL = 64 };
 
 static void leave_out(adcgs_train_config *c, int bits)

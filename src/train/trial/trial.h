@@ -15,7 +15,7 @@
 #include "train/trial/mechanisms.h"
 #include "train/train_config.h"
 
-enum { ADCGS_TRIALS_TEXT = 640 };
+enum { ADCGS_TRIALS_TEXT = 640 }; /* bytes of the text; arithmetic: one entry of each mechanism fits */
 
 /** Result of the trials for a mechanism. */
 typedef struct adcgs_trial {

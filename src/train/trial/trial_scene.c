@@ -9,6 +9,7 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     VIEWS_LEAST = 12,  /* minimum training views for trials */
     CAMERAS_LEAST = 5, /* minimum cameras to hold out whole cameras */

@@ -5,7 +5,7 @@
 
 #include "scene/scene.h"
 
-/** Maximum number of held-out views, and of training views of a trial. */
+/** Maximum number of held-out views, and of training views of a trial; chosen by hand, not measured. */
 enum { ADCGS_TRIAL_JUDGES = 16, ADCGS_TRIAL_VIEWS = 512 };
 
 /**
