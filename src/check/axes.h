@@ -27,7 +27,7 @@ typedef struct adcgs_axes_check {
     double here, there; /**< by points: mean share that a camera sees, under the poses as given and as meant */
 } adcgs_axes_check;
 
-enum { ADCGS_STEREO_PAIRS = 3 }; /* minimum number of camera pairs for a result */
+enum { ADCGS_STEREO_PAIRS = 3 }; /* minimum number of camera pairs for a result; chosen by hand, not measured */
 
 /** True if there are enough pairs and their matches lie on the epipolar lines. */
 int adcgs_stereo_poses_fit(const adcgs_stereo_pose_error *off);

@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+/* Origin: chosen by hand, not measured. */
 enum {
     AROUND = 64,     /* maximum number of neighbours */
     NORMAL_LEAST = 6 /* minimum number of points for a normal */

@@ -8,6 +8,7 @@
 
 #include "init/smooth.h"
 
+/* Maximum numbers of keypoints of an image and of correspondences of a camera; chosen by hand, not measured. */
 enum { ADCGS_KEYPOINTS_MAX = 224, ADCGS_CORRESPONDENCES_MAX = 1024 };
 
 /** A keypoint: a pixel with known depth and a window that differs from those of adjacent pixels. */

@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     AGREE_STRONG = 2, /* other views that must confirm a strong depth */
     AGREE_WEAK = 3    /* other views that must confirm a weak depth */

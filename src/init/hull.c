@@ -4,6 +4,10 @@
 
 #include <math.h>
 
+/*
+ * Origin, unless a line states one: chosen by hand, not measured. Hulls as a whole are measured on pose2sim_4cam
+ * (doc/log/matching.md).
+ */
 enum {
     VIEWS_LEAST = 3,     /* minimum number of views that contain a cube; two views constrain it too little */
     DEEPEST = 12,        /* maximum number of halvings of the first cube */
@@ -12,6 +16,10 @@ enum {
 #define REACH 2.0   /* scene units: half an edge of the first cube */
 #define CLOSED 2.0f /* pixels: radius of the closing of silhouettes */
 #define WELL_IN 3.0 /* pixels from the silhouette's edge beyond which no background shines through */
+/* Radius of a cube in an image / half its size: no gaps between cubes; chosen by hand, not measured. */
+#define FOOTPRINT 1.25
+#define SQRT_2 1.41421356f /* geometry: a diagonal step */
+#define SQRT_3 1.7320508   /* geometry: radius of the sphere around a cube / half its edge */
 
 /** Silhouettes of n views as distances to their edges, in pixels, and depth maps of the visible surface. */
 typedef struct hull {
@@ -31,7 +39,7 @@ typedef enum content { EMPTY, FULL, MIXED } content;
 static void relax(float *d, int w, int x, int y, int h, int step)
 {
     static const int across[4] = {-1, 0, 1, -1}, down[4] = {-1, -1, -1, 0};
-    static const float way[4] = {1.41421356f, 1, 1.41421356f, 1};
+    static const float way[4] = {SQRT_2, 1, SQRT_2, 1};
     for (int k = 0; k < 4; k++) {
         const int a = x + step * across[k], b = y + step * down[k];
         if (a >= 0 && b >= 0 && a < w && b < h)
@@ -106,8 +114,8 @@ static content ask(const hull *o, const double x[3], double half, double *pixel)
         const adcgs_stereo_view *v = &o->views[i];
         double at[2] = {0, 0}, depth;
         const int in_picture = adcgs_stereo_rig_project(v, x, at, &depth);
-        const double around = 1.7320508 * half; /* radius of the circumscribed sphere */
-        if (depth <= 2 * around) {              /* the sphere encloses the camera or lies behind it */
+        const double around = SQRT_3 * half; /* radius of the circumscribed sphere */
+        if (depth <= 2 * around) {           /* the sphere encloses the camera or lies behind it */
             mixed += depth > -around;
             seen += depth > -around;
             continue;
@@ -170,7 +178,7 @@ static void hide(const adcgs_stereo_view *v, float *nearest, const adcgs_stereo_
     double at[2], depth;
     if (!adcgs_stereo_rig_project(v, p->x, at, &depth))
         return;
-    const double radius = 1.25 * (double)p->size * v->fx / depth;
+    const double radius = FOOTPRINT * (double)p->size * v->fx / depth;
     const int left = ADCGS_MAX((int)(at[0] - radius), 0), right = ADCGS_MIN((int)(at[0] + radius), v->w - 1);
     const int top = ADCGS_MAX((int)(at[1] - radius), 0), bottom = ADCGS_MIN((int)(at[1] + radius), v->h - 1);
     for (int b = top; b <= bottom; b++)

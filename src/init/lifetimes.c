@@ -6,12 +6,18 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
-    REACH = 3,     /* frames: maximum distance of an end from the point's frame */
+    /*
+     * Frames: maximum distance of an end from the point's frame; calibrated on cross80 and the robot (doc/log/bodies.md,
+     * "Length").
+     */
+    REACH = 3,
     OFF_LEAST = 3, /* minimum number of differing pixels of a 3x3 window that does not show background */
     PART = 256     /* points per job */
 };
-#define BACKGROUND_SHARE_MIN 0.8 /* share of the cameras that see the place and must show the background */
+/* Share of the cameras that see the place and must show the background; 0.6 gains less on zju and cross80 (doc/log/bodies.md). */
+#define BACKGROUND_SHARE_MIN 0.8
 
 typedef struct job {
     adcgs_stereo_point *points;

@@ -5,8 +5,10 @@
 
 #include "init/rig.h"
 
+/** Side of a window, pixels, and its number of pixels; chosen by hand, not measured. */
 enum { ADCGS_WINDOW_SIDE = 7, ADCGS_WINDOW = ADCGS_WINDOW_SIDE * ADCGS_WINDOW_SIDE };
-#define ADCGS_WINDOW_TEXTURE 4e-4f /**< minimum variance of a window that can be found again */
+/** Minimum variance of a window that can be found again, values of 0 to 1; chosen by hand, not measured. */
+#define ADCGS_WINDOW_TEXTURE 4e-4f
 
 /**
  * Samples a window around a position and normalises it to mean 0 and norm 1. right, down: steps between its pixels. \return its

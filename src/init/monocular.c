@@ -6,6 +6,10 @@
 
 #include <math.h>
 
+/*
+ * Origin: chosen by hand, not measured one by one. Films as a whole are measured on four generated ones and nrnerf_hand
+ * (doc/log/matching.md, "Films: matching of one moving camera").
+ */
 enum { SEEN_LEAST = 4 };   /* minimum number of other images for a background colour */
 enum { ALIKE_MOST = 128 }; /* maximum number of velocities in a median */
 #define ALIKE_REACH 0.15   /* scene units: radius of the velocity median */
@@ -13,7 +17,7 @@ enum {
     OFF_LEAST = 9,  /* minimum number of differing pixels in a 5x5 window */
     PART_LEAST = 24 /* pixels: minimum size of a moving part */
 };
-#define MOVED (22 / 255.0f) /* minimum difference from all background colours nearby */
+#define MOVED (22 / 255.0f) /* values of 0 to 1: minimum difference from all background colours nearby */
 #define HIDDEN 1.08         /* relative to the depth of the surface; points farther away are hidden */
 
 /* ---- Filling of static depths ---- */

@@ -4,22 +4,26 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
-    RADIUS = 2, /* pixels: of a window */
-    SIDE = 2 * RADIUS + 1,
-    PLANES_LEAST = 24,
-    PLANES_MOST = 112
+    RADIUS = 2,            /* pixels: of a window */
+    SIDE = 2 * RADIUS + 1, /* pixels */
+    PLANES_LEAST = 24,     /* depths of a sweep, minimum */
+    PLANES_MOST = 112      /* maximum; 320 are slower without gain on four scenes of five (doc/log/matching.md) */
 };
-#define WINDOW (SIDE * SIDE)
-#define NOISE 1e-4f /* variance of a window without texture */
+#define WINDOW (SIDE * SIDE) /* pixels */
+#define NOISE 1e-4f          /* variance of a window without texture, values of 0 to 1 */
+/* Costs are shares of ADCGS_SWEEP_COST; chosen by hand, not measured. */
 enum {
     UNLIKE_MOST = 120,                            /* maximum cost of uncorrelated windows */
     COLOUR_MOST = ADCGS_SWEEP_COST - UNLIKE_MOST, /* maximum cost of a colour difference */
     UNSEEN = 2 * ADCGS_SWEEP_COST                 /* cost of a position that a neighbour does not see */
 };
 enum { STILL_THERE = 100 }; /* cost where the view shows moving content and the neighbour shows background */
-enum { THIN = 12 };         /* maximum number of moving pixels in the window of a thin object */
-#define COLOUR_OFF 0.15f    /* colour difference of maximum cost */
+/* Maximum number of moving pixels in the window of a thin object; measured on rods and four scenes (doc/log/matching.md). */
+enum { THIN = 12 };
+#define COLOUR_OFF 0.15f /* colour difference of maximum cost, values of 0 to 1 */
+/* Cost per unit of colour difference, summed over a window; arithmetic. */
 #define COLOUR_SCALE (COLOUR_MOST / (3 * WINDOW * COLOUR_OFF))
 
 /* ---- Planes ---- */

@@ -11,7 +11,8 @@
 
 #include "init/rig.h"
 
-enum { ADCGS_SWEEP_SOURCES = 8, ADCGS_SWEEP_COST = 200 /**< maximum cost */ };
+/** Maximum number of neighbours of a view, and the maximum cost; chosen by hand, not measured. */
+enum { ADCGS_SWEEP_SOURCES = 8, ADCGS_SWEEP_COST = 200 };
 
 /** A part of an image, its neighbours, and the planes. */
 typedef struct adcgs_sweep {

@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define TINT 14.0       /* pixels per unit of colour difference: 0.07 corresponds to one pixel */
 #define MATCH_REACH 2.0 /* pixels: maximum distance of a match in space */
 #define MATCH_OFF 3.0   /* pixels: the same including the colour term */

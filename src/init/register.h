@@ -11,7 +11,7 @@
 #include "init/cloud.h"
 #include "init/rigid/rigid.h"
 
-enum { ADCGS_BODY_SIDES = 25 /**< four quarters of each cube face, by the normal, and one side for unknown normals */ };
+enum { ADCGS_BODY_SIDES = 25 /**< four quarters of each cube face, by the normal, and one side for unknown normals; geometry */ };
 
 /** Properties of a body's point in addition to its position. */
 typedef struct adcgs_body_more {

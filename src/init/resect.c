@@ -7,13 +7,14 @@
 
 #include <math.h>
 
-enum { ROUNDS = 30 }; /* of least squares */
-enum { TRIES = 400 }; /* poses from two correspondences */
-enum { SIGHTS_LEAST = 6 };
-#define SHARP 0.7    /* pixels: final error at which the fit is one half */
-#define NARROWER 0.8 /* factor of that error from one round to the next */
-#define ROUGHLY 0.06 /* share of the image width: tolerance of a pose from two correspondences, which ignores parallax */
-#define DAMPING 1e-6
+/* Origin, unless a line states one: chosen by hand, not measured. */
+enum { ROUNDS = 30 };      /* of least squares */
+enum { TRIES = 400 };      /* poses from two correspondences */
+enum { SIGHTS_LEAST = 6 }; /* minimum number of correspondences; least squares of six unknowns need three */
+#define SHARP 0.7          /* pixels: final error at which the fit is one half */
+#define NARROWER 0.8       /* factor of that error from one round to the next */
+#define ROUGHLY 0.06       /* share of the image width: tolerance of a pose from two correspondences, which ignores parallax */
+#define DAMPING 1e-6       /* relative increase of the system's diagonal */
 
 static void to_camera(const adcgs_stereo_view *v, const double x[3], double p[3])
 {

@@ -8,14 +8,19 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     PIXELS_LEAST = 4096, /* pixels: minimum size of an image for matching */
     PIXELS_MOST = 28000  /* pixels: maximum size of a reduced image */
 };
-#define BACKGROUND_MAX_LEVELS 18  /* levels of 255: maximum difference of a pixel from its background */
+/* Levels of 255: maximum difference of a pixel from its background; as ADCGS_STEREO_MOVED. */
+#define BACKGROUND_MAX_LEVELS 18
 #define BACKGROUND_SHARE_MIN 0.55 /* minimum share of the frames in which a pixel must show its background */
 #define NEAREST 0.2               /* scene units: default minimum depth, from depths observed in such units */
 #define FARTHEST 8.0              /* scene units: default maximum depth, likewise */
+#define NEAR_SLACK 0.9            /* minimum depth / near bound of the data set */
+#define NEAR_LEAST 0.05           /* scene units: minimum of it */
+#define DEEP 4                    /* minimum ratio of the maximum depth to the minimum depth */
 
 /** Camera and time of the scene's views. */
 typedef struct index {
@@ -36,6 +41,7 @@ static void index_clear(index *x)
 
 /* ---- Single moving camera ---- */
 
+/* Chosen by hand, not measured. */
 enum {
     MONOCULAR_FRAMES_MIN = 8, /* minimum number of images */
     ALIKE_OF_4 = 3            /* of four images: minimum number with the viewing direction of the previous one */
@@ -167,6 +173,7 @@ void adcgs_stereo_rig_get_frame(const adcgs_stereo_camera *camera, int frame, fl
 /** Binomial filter over 5 pixels of a line of n pixels, `step` apart. Unknown pixels have no weight. */
 static void soften_line(uint8_t *line, int n, size_t step, uint8_t *copy)
 {
+    /* Binomial coefficients; arithmetic. */
     static const int weight[5] = {1, 4, 6, 4, 1};
     for (int i = 0; i < n; i++)
         memcpy(copy + 4 * i, line + (size_t)i * step, 4);
@@ -255,8 +262,8 @@ static adcgs_status find_usual(adcgs_stereo_camera *c, adcgs_error *error)
 /** Sets the depth range from the data set's near bound, or to the range of scene units. */
 static void set_depths(adcgs_stereo_rig *rig, const adcgs_scene *scene, const adcgs_stereo_options *o)
 {
-    rig->nearest = scene->near_bound > 0 ? fmax(0.9 * scene->near_bound / o->scale, 0.05) : NEAREST;
-    rig->farthest = fmax(FARTHEST, 4 * rig->nearest);
+    rig->nearest = scene->near_bound > 0 ? fmax(NEAR_SLACK * scene->near_bound / o->scale, NEAR_LEAST) : NEAREST;
+    rig->farthest = fmax(FARTHEST, DEEP * rig->nearest);
 }
 
 static float time_of(const adcgs_scene *scene, double time)

@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { ADCGS_STEREO_CAMERAS = 24 };
+enum { ADCGS_STEREO_CAMERAS = 24 }; /* maximum number of matched cameras; chosen by hand, not measured */
 
 /** A camera and its image. */
 typedef struct adcgs_stereo_view {
@@ -46,7 +46,8 @@ adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *sce
                                    adcgs_error *error);
 void adcgs_stereo_rig_clear(adcgs_stereo_rig *rig);
 
-enum { ADCGS_STEREO_MOVED = 18 }; /**< levels of 255: maximum difference from the background without motion */
+/** Levels of 255: maximum difference from the background without motion; 9 and 6 gain nothing on zju (doc/log/matching.md). */
+enum { ADCGS_STEREO_MOVED = 18 };
 
 /** True if a pixel differs from the background in a frame. The frame must have an image. */
 static inline int adcgs_stereo_rig_differs(const adcgs_stereo_camera *c, int frame, int pixel)

@@ -5,6 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/*
+ * Origin: semi-global matching (Hirschmueller 2008), prices chosen by hand, not measured. Costs are shares of ADCGS_SWEEP_COST.
+ */
 enum {
     STEP_PRICE = 6,  /* cost of a step to an adjacent plane */
     JUMP_LEAST = 20, /* cost of a larger step at high contrast */
@@ -15,7 +18,9 @@ enum {
 #define ALIKE 0.45f /* maximum cost of a strong match, relative to the full cost */
 #define CLEAR 0.03f /* minimum lead of the best plane over the next best */
 
-/** Padding before and after the planes of a path, so that no plane is a special case. */
+/**
+ * Padding before and after the planes of a path, so that no plane is a special case: places, and a cost above all; arithmetic.
+ */
 enum { BESIDE = 1, BEYOND = 16000 };
 
 /** Costs to[] of a pixel's planes when the path comes from a neighbour with costs from[]. Returns the minimum of to. */

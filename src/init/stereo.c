@@ -14,15 +14,18 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     REFERENCES = 4,    /* maximum number of views matched per frame */
     MOVING_LEAST = 24, /* minimum number of moving pixels in a view that is matched */
     MARGIN = 4         /* pixels around the moving ones that are matched, too */
 };
+/* Measured on rods and four scenes (doc/log/matching.md, "Thin structures are matched"). */
 enum {
     MOST = 5, /* differing pixels of a 3x3 window that make its centre moving */
     LINE = 3  /* the same if the centre itself differs */
 };
+/* Chosen by hand, not measured. */
 #define AXES_ALIKE 0.6 /* cosine: minimum alignment of the axes of matched views */
 #define APART 0.005    /* scene units: minimum distance between views, for depth */
 

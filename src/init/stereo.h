@@ -16,7 +16,8 @@
 #include "base/thread_pool.h"
 #include "scene/scene.h"
 
-enum { ADCGS_MATCHING_FRAMES_MAX = 48 /**< maximum number of matched frames */ };
+/** Maximum number of matched frames; with 24, no body of the demo is found (doc/log/bodies.md). */
+enum { ADCGS_MATCHING_FRAMES_MAX = 48 };
 
 /** Relation of a moving point to the static surfaces. */
 typedef enum adcgs_stereo_in_place {
@@ -70,7 +71,7 @@ typedef struct adcgs_stereo_pose_error {
     double pixels; /**< pixels of the original image per pixel of a reduced image */
 } adcgs_stereo_pose_error;
 
-enum { ADCGS_POSE_OUTLIERS_MAX = 4 };
+enum { ADCGS_POSE_OUTLIERS_MAX = 4 }; /* maximum number of reported cameras; chosen by hand, not measured */
 
 /** A camera whose image contradicts its pose, and the correction by the fitted pose. */
 typedef struct adcgs_pose_outlier {

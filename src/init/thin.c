@@ -7,8 +7,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { ROUNDS = 16 };
+/* Chosen by hand, not measured. */
+enum { ROUNDS = 16 };      /* bisection steps of the cells' width */
 #define DETAIL_LEAST 0.02f /* contrast up to which cells have the chosen width */
+#define FINER_MOST 16      /* maximum ratio of contrasts by which cells become smaller */
+#define WIDTH_FINEST 0.5   /* pixels: bounds of the cells' width */
+#define WIDTH_COARSEST 4096
 
 /** A point, its cell, and its squared distance from the cell's centre. */
 typedef struct entry {
@@ -30,7 +34,7 @@ static int by_cell(const void *a, const void *b)
 /** Cell edges are powers of sqrt 2, so that points of several views share cells. */
 static void set_entry(entry *e, const adcgs_stereo_point *p, double width)
 {
-    const double finer = sqrt((double)fminf(fmaxf(p->detail / DETAIL_LEAST, 1), 16));
+    const double finer = sqrt((double)fminf(fmaxf(p->detail / DETAIL_LEAST, 1), FINER_MOST));
     const int level = (int)floor(2 * log2(width * (double)p->size / finer));
     const double edge = exp2(0.5 * level);
     uint64_t cell = adcgs_mix64((uint64_t)level);
@@ -58,7 +62,7 @@ static uint32_t count(entry *e, const adcgs_stereo_list *list, double width)
 
 adcgs_status adcgs_stereo_thin(adcgs_stereo_list *list, uint32_t most, adcgs_error *error)
 {
-    double fine = 0.5, coarse = 4096;
+    double fine = WIDTH_FINEST, coarse = WIDTH_COARSEST;
     if (list->n < 2)
         return ADCGS_OK;
     entry *e = adcgs_alloc(NULL, list->n, sizeof *e, error);

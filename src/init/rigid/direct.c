@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     ROUNDS = 10, /* maximum number of steps */
     LEAST = 30   /* minimum number of samples */
@@ -15,7 +16,7 @@ enum {
 #define OFF_MIDDLE 0.12 /* the same from which iteration may stop early */
 #define DAMPING 1e-3    /* relative increase of the system's diagonal */
 #define STIFF 0.05      /* prior of slope 1, as a sum of squared colours */
-#define SLOPE_MOST 3.0  /* maximum slope of colours */
+#define SLOPE_MOST 3.0  /* maximum slope of colours: ratio */
 #define STEP_LEAST 0.01 /* pixels: step length at which iteration stops */
 #define STEP_MOST 1.5   /* pixels: maximum step of the body's points, approximately */
 

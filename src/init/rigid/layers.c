@@ -7,9 +7,21 @@
 
 #include <math.h>
 
-enum { AROUND = 64, FEW = 500, SAMPLES = 4096, TEN = 10 };
-#define CELL 3.0      /* pixels: cell size of the full grid */
-#define CELL_FEW 14.0 /* pixels: cell size of the sparse grid */
+/* Origin of all: chosen by hand, not measured. */
+enum {
+    AROUND = 64,    /* maximum number of neighbours that are counted */
+    FEW = 500,      /* points: size of the sparse sets, approximately */
+    SAMPLES = 4096, /* points whose pixel size is compared, at most */
+    TEN = 10,       /* mean number of points within reach */
+    TRIED = 37      /* one in so many points is tried for the reach */
+};
+#define CELL 3.0         /* pixels: cell size of the full grid */
+#define CELL_FEW 14.0    /* pixels: cell size of the sparse grid */
+#define REACH_LEAST 2    /* pixels: minimum reach */
+#define REACH_MOST 12    /* pixels: maximum reach */
+#define REACH_STEP 1.25  /* ratio of tried reaches */
+#define PIXEL_LEAST 0.4  /* pixel size / reach, minimum */
+#define NORMAL_REACH 1.3 /* radius for normals / reach */
 
 /** Median of the points' pixel sizes. */
 static adcgs_status find_pixel(adcgs_layers *l, uint32_t n, adcgs_error *error)
@@ -32,15 +44,15 @@ static void find_reach(adcgs_layers *l)
 {
     uint32_t near[AROUND];
     const double pixel = l->pixel;
-    for (l->reach = 2 * pixel; l->reach < 12 * pixel; l->reach *= 1.25) {
+    for (l->reach = REACH_LEAST * pixel; l->reach < REACH_MOST * pixel; l->reach *= REACH_STEP) {
         uint64_t sum = 0, n = 0;
         for (int m = 0; m < l->n; m++)
-            for (uint32_t i = 0; i < l->all[m].n; i += 37, n++)
+            for (uint32_t i = 0; i < l->all[m].n; i += TRIED, n++)
                 sum += adcgs_cloud_within(&l->all[m], l->all[m].p[i].x, l->reach, near, AROUND);
         if (sum >= TEN * n)
             break;
     }
-    l->pixel = fmax(pixel, 0.4 * l->reach);
+    l->pixel = fmax(pixel, PIXEL_LEAST * l->reach);
 }
 
 /** Sets the colour from the softened image closest to the point's own colour: its source view, or a similar one. */
@@ -90,7 +102,7 @@ adcgs_status adcgs_layers_init(adcgs_layers *l, const adcgs_stereo *stereo, cons
     }
     find_reach(l);
     for (int m = 0; m < l->n; m++) {
-        adcgs_cloud_normals(&l->all[m], 1.3 * l->reach, rig, l->normal + l->begin[m]);
+        adcgs_cloud_normals(&l->all[m], NORMAL_REACH * l->reach, rig, l->normal + l->begin[m]);
         for (uint32_t i = l->begin[m]; i < l->begin[m + 1]; i++)
             recolour(&l->p[i], l->normal[i], &l->views[m]);
     }

@@ -4,11 +4,12 @@
 
 #include "init/rigid/direct.h"
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
-    BODY_MOST = 6000, /* points */
+    BODY_MOST = 6000, /* points: maximum of a body */
     HOPS = 6,         /* maximum number of growth steps per frame, each of length reach */
     SURE = 3,         /* frames in which a point must be seen before it can be dropped */
-    AROUND = 32
+    AROUND = 32       /* maximum number of neighbours */
 };
 #define KEEP 0.45 /* minimum share of the frames with a match, among those in which the point is seen */
 #define FITS 0.5  /* image agreement that counts as a match, if no matching point is found */

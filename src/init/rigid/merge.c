@@ -8,13 +8,15 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 enum {
     LEAST = 60,  /* minimum number of points of a merged model */
     AROUND = 48, /* maximum number of neighbours */
     MEET = 6     /* minimum number of points for smoothing */
 };
-#define EDGE 1.2   /* pixels: size of a cell */
-#define SMOOTH 2.5 /* pixels: radius of smoothing */
+#define EDGE 1.2           /* pixels: size of a cell */
+#define SMOOTH 2.5         /* pixels: radius of smoothing */
+#define NORMALS_ALIKE 0.7f /* cosine: minimum between normals of points that are smoothed together */
 
 /** A frame's point, transformed to the rest pose. */
 typedef struct entry {
@@ -104,7 +106,7 @@ static void smooth_point(const adcgs_body_model *m, const adcgs_cloud *own, uint
     memcpy(out, m->p[i].x, 3 * sizeof *out);
     for (uint32_t k = 0; k < n; k++) {
         const float *other = m->more[near[k]].normal;
-        if (normal[0] * other[0] + normal[1] * other[1] + normal[2] * other[2] < 0.7f)
+        if (normal[0] * other[0] + normal[1] * other[1] + normal[2] * other[2] < NORMALS_ALIKE)
             continue;
         met++;
         for (int a = 0; a < 3; a++)

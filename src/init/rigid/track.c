@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin: chosen by hand, not measured one by one; checked against the true motion of turning boxes (tests/unit/test_bodies). */
 enum {
     FEW = 120,    /* points of a body for trying initial poses */
     MANY = 700,   /* points of a body for refining a pose */
@@ -16,13 +17,14 @@ enum {
 };
 #define SHARE_GOOD 0.25 /* minimum share of matching points */
 #define LIGHT_GOOD 0.45 /* minimum agreement of the images */
-#define SHARE_SURE 0.35 /* share and agreement from which no other initial pose is tried */
-#define LIGHT_SURE 0.52
-#define ABOUT 0.97     /* relative score that counts as equally good */
-#define APART 3.0      /* pixels: minimum distance between the positions about which rotations are tried */
-#define TURN_STEP 0.26 /* radians between rotations */
-enum { TURNS = 4, STARTS = 3 + 2 * 13 * 2 * TURNS }; /* steps to each side; 2 positions x 13 axes */
+#define SHARE_SURE 0.35 /* share of matching points from which no other initial pose is tried */
+#define LIGHT_SURE 0.52 /* agreement from which no other initial pose is tried */
+#define ABOUT 0.97      /* relative score that counts as equally good */
+#define APART 3.0       /* pixels: minimum distance between the positions about which rotations are tried */
+#define TURN_STEP 0.26  /* radians between rotations */
+enum { TURNS = 4, STARTS = 3 + 2 * 13 * 2 * TURNS }; /* steps to each side; 2 positions x 13 axes, geometry */
 
+/* Reach and sharpness in pixels, and rounds, from coarse to fine; chosen by hand, not measured. */
 static const adcgs_registration_stage lay_far = {.reach = 14, .sharp = 5, .rounds = 6};
 static const adcgs_registration_stage lay_near = {.reach = 5, .sharp = 2.5, .rounds = 4};
 static const adcgs_registration_stage lay_close = {.reach = 3, .sharp = 1.5, .rounds = 5};
