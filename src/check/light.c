@@ -6,7 +6,8 @@
 
 #include <math.h>
 
-enum { SIDE = 2 * ADCGS_THUMBNAIL_SIDE }; /* pixels along the shorter side of images for thumbnails: each cell has several */
+/* Pixels along the shorter side of images for thumbnails: each cell has several; chosen by hand, not measured. */
+enum { SIDE = 2 * ADCGS_THUMBNAIL_SIDE };
 
 /** The largest factor of reduction that leaves SIDE pixels along the shorter side of each image; at least 1. */
 static int divide_for(const adcgs_scene *scene)

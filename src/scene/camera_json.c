@@ -14,9 +14,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define FILE_MAX ((uint64_t)256 << 20)
-#define FRAMES_MAX 1000000
-#define TERM_MAX 1e6 /* largest magnitude of a distortion coefficient */
+/* Bounds of valid files, far above any capture; chosen by hand, not measured. */
+#define FILE_MAX ((uint64_t)256 << 20) /* bytes */
+#define FRAMES_MAX 1000000             /* frames of a file */
+#define TERM_MAX 1e6                   /* largest magnitude of a distortion coefficient */
+#define FOCAL_MIN 1e-3                 /* pixels */
+#define FOCAL_MAX 1e9                  /* pixels */
+#define ANGLE_MIN 1e-6                 /* radians: least field of view */
+#define ANGLE_MAX 3.14159              /* radians: just below a half turn, geometry */
 
 /** Reports the kind of a file that does not begin like JSON, if it is known, else jansson's error. */
 static adcgs_status refuse_text(const char *path, const uint8_t *text, const json_error_t *where, adcgs_error *error)
@@ -217,10 +222,10 @@ static adcgs_status read_focal(const adcgs_json_place *at, const char *pixels, c
                                int *found)
 {
     double view = 0.0;
-    ADCGS_TRY(adcgs_json_number(at, pixels, 1e-3, 1e9, focal, found));
+    ADCGS_TRY(adcgs_json_number(at, pixels, FOCAL_MIN, FOCAL_MAX, focal, found));
     if (*found)
         return ADCGS_OK;
-    ADCGS_TRY(adcgs_json_number(at, angle, 1e-6, 3.14159, &view, found));
+    ADCGS_TRY(adcgs_json_number(at, angle, ANGLE_MIN, ANGLE_MAX, &view, found));
     if (*found)
         *focal = 0.5 * size / tan(0.5 * view);
     return ADCGS_OK;

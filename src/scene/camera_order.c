@@ -8,7 +8,8 @@
 
 #include <stdlib.h>
 
-#define STAY 3 /* least mean number of views per camera: with fewer, equal cameras are chance */
+/* Least mean number of views per camera: with fewer, equal cameras are chance; chosen by hand, not measured. */
+#define STAY 3
 
 typedef struct item {
     double time;

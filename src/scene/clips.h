@@ -9,7 +9,8 @@
 #include "media/video/video.h"
 #include "scene/scene.h"
 
-#define ADCGS_CLIPS_OPEN 32 /**< videos open at once; the least recently used is closed to open another */
+/** Videos open at once; the least recently used is closed to open another; chosen by hand, not measured. */
+#define ADCGS_CLIPS_OPEN 32
 
 typedef struct adcgs_clips adcgs_clips;
 

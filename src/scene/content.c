@@ -9,7 +9,7 @@
 
 #include <stdlib.h>
 
-#define PIECE ((size_t)1 << 18)
+#define PIECE ((size_t)1 << 18) /* bytes read at a time; chosen by hand, not measured */
 
 static adcgs_status add_file(adcgs_md5 *md5, uint8_t *buffer, const char *path, adcgs_error *error)
 {

@@ -5,7 +5,7 @@
 
 #include "scene/scene.h"
 
-#define ADCGS_CONTENT_BYTES 16
+#define ADCGS_CONTENT_BYTES 16 /* bytes of an MD5; definition */
 
 /**
  * MD5 of the sizes and contents of all files that make up the views of a split, in the order of the views; file names do not

@@ -8,9 +8,9 @@
 
 #include <math.h>
 
-#define POINTS_MOST 10000 /* largest number of points that are examined */
-#define BOUNDS_PER_EXTENT 4
-#define SPREADS_PER_EXTENT 4
+#define POINTS_MOST 10000    /* largest number of points that are examined; chosen by hand, not measured */
+#define BOUNDS_PER_EXTENT 4  /* extent / near bound; chosen by hand, not measured */
+#define SPREADS_PER_EXTENT 4 /* extent / spread of the cameras; chosen by hand, not measured */
 
 static void camera_centre(const adcgs_scene *scene, uint32_t view, double centre[3])
 {

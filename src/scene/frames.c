@@ -10,8 +10,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define FRAME_MAX 1000000000 /* larger frame numbers are mistakes */
-#define GRID_WITHIN 0.25     /* largest distance of a time from its grid point, as a share of an interval */
+#define FRAME_MAX 1000000000 /* larger frame numbers are mistakes; chosen by hand, not measured */
+/* Largest distance of a time from its grid point, as a share of an interval; chosen by hand, not measured. */
+#define GRID_WITHIN 0.25
 
 /** Reads digits, if there are any. Returns 0, or -1 if the number is too large. */
 static int take_number(const char **text, int64_t *value)

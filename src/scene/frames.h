@@ -5,7 +5,8 @@
 
 #include "base/base.h"
 
-#define ADCGS_TIME_TOLERANCE 1e-6 /**< times of a layout, which are in [0,1], are equal if they are closer */
+/** Times of a layout, which are in [0,1], are equal if they are closer; chosen by hand, not measured. */
+#define ADCGS_TIME_TOLERANCE 1e-6
 
 struct adcgs_scene;
 

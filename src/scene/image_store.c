@@ -13,8 +13,8 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-#define FULL 65535.0f
-#define LEVEL 257 /* step in 16 bits for one level of 8 bits */
+#define FULL 65535.0f /* largest 16-bit value; arithmetic */
+#define LEVEL 257     /* step in 16 bits for one level of 8 bits; arithmetic: 65535 / 255 */
 
 typedef enum place { IN_MEMORY, IN_FILE, NOWHERE } place; /* NOWHERE: decoded again for each use */
 

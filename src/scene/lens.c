@@ -6,13 +6,14 @@
 
 #include <math.h>
 
-#define REACH 1e4         /* largest r^2 that is considered */
-#define HALVINGS 60       /* bisection steps; the last ones reach rounding precision */
-#define START_HALVINGS 16 /* bisection steps before Newton's method takes over */
-#define NEWTON_STEPS 40
-#define NEWTON_TOLERANCE 1e-12
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define REACH 1e4              /* largest r^2 that is considered */
+#define HALVINGS 60            /* bisection steps; the last ones reach rounding precision, arithmetic */
+#define START_HALVINGS 16      /* bisection steps before Newton's method takes over */
+#define NEWTON_STEPS 40        /* maximum number of steps */
+#define NEWTON_TOLERANCE 1e-12 /* residual, relative to 1 + radius in the image plane */
 
-/* Number of coefficients in r^2 of numerator and denominator; degree of their product. */
+/* Number of coefficients in r^2 of numerator and denominator; degree of their product. Literature: OpenCV's lens model. */
 enum { ABOVE = 5, BELOW = 4, DEGREE = ABOVE + BELOW - 2 };
 
 /** The distorted direction (x', y'), with dx'/dx, dx'/dy = dy'/dx and dy'/dy. */

@@ -7,14 +7,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define MOVES_LEAST 0.01                 /* pixels; smaller displacements do not justify resampling */
-#define CORNER_SLACK 1e-6                /* pixels, for rounding at the image's edge */
-#define PROBES 32                        /* intervals along a side of the image; the lens is evaluated at their ends */
-#define RASTER 128                       /* cells along the longer side, in the search for the rectangle */
-#define LEAST_SHARE 10                   /* at least one in this many pixels must be left */
-#define FISHEYE_REACH 1.7320508075688772 /* tan of 60 degrees: further out, a pinhole's pixels resolve little */
-#define FOCAL_LEAST 1e-3
-#define NUMBER_MOST 1e9 /* bound on focal lengths and pixel offsets: whole numbers of this size are exact */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define MOVES_LEAST 0.01  /* pixels; smaller displacements do not justify resampling */
+#define CORNER_SLACK 1e-6 /* pixels, for rounding at the image's edge */
+#define PROBES 32         /* intervals along a side of the image; the lens is evaluated at their ends */
+#define RASTER 128        /* cells along the longer side, in the search for the rectangle */
+#define LEAST_SHARE 10    /* at least one in this many pixels must be left */
+/* Tan of 60 degrees, geometry: further out, a pinhole's pixels resolve little. */
+#define FISHEYE_REACH 1.7320508075688772
+#define FOCAL_LEAST 1e-3 /* pixels: minimum focal length */
+#define NUMBER_MOST 1e9  /* bound on focal lengths and pixel offsets: whole numbers of this size are exact */
 
 /** A rectangle in the pinhole's image plane: whole numbers, in pixels, with the lens's principal point. */
 typedef struct area {

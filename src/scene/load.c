@@ -17,7 +17,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define COUNTS 0.5f /* least unmasked share of a pixel that counts, and least moving share of a moving pixel */
+/* Least unmasked share of a pixel that counts, and least moving share of a moving pixel; a half, definition. */
+#define COUNTS 0.5f
 
 static adcgs_status check_size(const adcgs_scene_view *view, const char *path, int width, int height, adcgs_error *error)
 {

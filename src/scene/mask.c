@@ -12,8 +12,10 @@
 
 #include <math.h>
 
-#define SAME_SHARE 0.01   /* share of the pixels on which both may differ, for soft edges */
-#define NEARLY_BLACK 0.1f /* largest value of black after JPEG's errors, for pixels from 0 to 1 */
+/* Share of the pixels on which both may differ, for soft edges; chosen by hand, not measured. */
+#define SAME_SHARE 0.01
+/* Largest value of black after JPEG's errors, for pixels from 0 to 1; chosen by hand, not measured. */
+#define NEARLY_BLACK 0.1f
 
 static int is_black(const float *pixel, int channels)
 {

@@ -8,6 +8,11 @@
 
 #include <math.h>
 
+/* Chosen by hand, not measured. */
+/* |determinant| relative to that of a rotation of the same scale, below which a pose is singular. */
+#define SINGULAR 1e-6
+#define PRIOR 1e-3 /* weight of the mean of the cameras in the point nearest to all axes, relative to one axis */
+
 /** G = R^T R of the 3x3 part of a 3x4 matrix. */
 static void gram(const double pose[12], double g[3][3])
 {
@@ -56,7 +61,7 @@ const char *adcgs_pose_check(double pose[12])
     const double det = determinant(pose), scale = (g[0][0] + g[1][1] + g[2][2]) / 3.0;
     if (!isfinite(scale) || !isfinite(det))
         return "holds values that are too large";
-    if (scale <= 0.0 || fabs(det) < 1e-6 * scale * sqrt(scale))
+    if (scale <= 0.0 || fabs(det) < SINGULAR * scale * sqrt(scale))
         return "is singular";
     if (deviation(g, 1.0) > ADCGS_POSE_TOLERANCE)
         return deviation(g, scale) <= ADCGS_POSE_TOLERANCE ? "is scaled, expected a rotation"
@@ -119,8 +124,8 @@ void adcgs_pose_centre(const adcgs_scene_view *views, uint32_t n, double centre[
         }
     }
     for (int i = 0; i < 3; i++) {
-        a[i][i] += 1e-3 * n;
-        b[i] += 1e-3 * n * mean[i];
+        a[i][i] += PRIOR * n;
+        b[i] += PRIOR * n * mean[i];
     }
     solve(a, b, centre);
 }

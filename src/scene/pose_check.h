@@ -5,7 +5,8 @@
 
 #include "scene/scene.h"
 
-#define ADCGS_POSE_TOLERANCE 1e-3 /**< largest entry of |R^T R - I| that counts as rounding of a rotation */
+/** Largest entry of |R^T R - I| that counts as rounding of a rotation; chosen by hand, not measured. */
+#define ADCGS_POSE_TOLERANCE 1e-3
 
 /**
  * Makes R of a row-major 3x4 [R|c] orthonormal to rounding precision.

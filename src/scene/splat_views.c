@@ -12,7 +12,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define OPACITY_MAX 0.99f /* largest opacity of a primitive */
+/* Largest opacity of a primitive; literature (3D Gaussian splatting), as in the specification. */
+#define OPACITY_MAX 0.99f
 
 void adcgs_splat_scene_free(adcgs_splat_scene **splats)
 {

@@ -12,7 +12,8 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-#define LEFT_TO_OTHERS 16 /* one part in this many of the free space is left for outputs and checkpoints on the same disk */
+/* One part in this many of the free space is left for outputs and checkpoints on the same disk; chosen by hand, not measured. */
+#define LEFT_TO_OTHERS 16
 
 char *adcgs_spool_folder(void)
 {

@@ -9,6 +9,10 @@
 #include <math.h>
 #include <stddef.h>
 
+/*
+ * Cells of 0 to 1; chosen by hand, and checked on 46 generated scenes and six others without faults, and on faults of known
+ * strength (doc/log/stability.md, "Warnings about footage").
+ */
 #define DARK 0.02  /* least value of a cell: black level and rounding dominate below */
 #define LIGHT 0.95 /* largest value of a cell: clipped values do not become brighter */
 #define FEW 32     /* least number of cells: fewer are one object, not the light */

@@ -3,9 +3,9 @@
 #ifndef ADCGS_SCENE_THUMBNAIL_STATS_H
 #define ADCGS_SCENE_THUMBNAIL_STATS_H
 
-#define ADCGS_THUMBNAIL_SIDE 32
+#define ADCGS_THUMBNAIL_SIDE 32 /* cells along a side; chosen by hand, not measured */
 #define ADCGS_THUMBNAIL_CELLS (ADCGS_THUMBNAIL_SIDE * ADCGS_THUMBNAIL_SIDE)
-#define ADCGS_THUMBNAIL_TINT_SIDE (ADCGS_THUMBNAIL_SIDE / 2)
+#define ADCGS_THUMBNAIL_TINT_SIDE (ADCGS_THUMBNAIL_SIDE / 2) /* the same for colours: of four cells the mean */
 #define ADCGS_THUMBNAIL_TINTS (ADCGS_THUMBNAIL_TINT_SIDE * ADCGS_THUMBNAIL_TINT_SIDE)
 
 /** Kinds of change from one image to another. */
