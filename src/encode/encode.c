@@ -13,8 +13,9 @@
 
 #include <math.h>
 
-#define PARTS_MAX 100000 /* ticks per frame, at most */
-#define TICK_WITHIN 1e-6 /* ticks: rounding error at which a time still counts as a whole number */
+#define PARTS_MAX 100000 /* ticks per frame, at most; chosen by hand, not measured */
+/* Ticks: rounding error at which a time still counts as a whole number; arithmetic of binary64. */
+#define TICK_WITHIN 1e-6
 
 adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error)
 {

@@ -10,7 +10,7 @@
 
 /* ---- Networks ---- */
 
-/** The largest binary32 below 2^8, the bound of weights of binary32 networks. */
+/** The largest binary32 below 2^8, the bound of weights of binary32 networks; definition of the format. */
 #define FLOAT_WEIGHT_MAX 0x1.fffffep7f
 
 static adcgs_status tensor_alloc(adcgs_tensor *t, uint32_t rows, uint32_t cols, int e, adcgs_error *error)

@@ -6,8 +6,8 @@
 #include "scene/scene.h"
 #include "stream/stream.h"
 
-#define ADCGS_STORED_CAMERAS_MAX 8 /**< cameras without a path */
-#define ADCGS_STORED_PATHS_MAX 8   /**< filmed paths */
+#define ADCGS_STORED_CAMERAS_MAX 8 /**< cameras without a path; chosen by hand, not measured */
+#define ADCGS_STORED_PATHS_MAX 8   /**< filmed paths; chosen by hand, not measured */
 
 /**
  * Stores the filmed path of each moving camera; without a path a few training cameras, spread evenly over all of them. Images

@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-#define NEAR 1e-5 /* tolerance for rounding of stored cameras, relative to 1 */
-#define LEVEL 3   /* the level of a growing stream, since its length is unknown */
+#define NEAR 1e-5 /* tolerance for rounding of stored cameras, relative to 1; arithmetic of binary32 */
+#define LEVEL 3   /* the level of a growing stream, since its length is unknown; definition */
 
 /** Passes the written bytes to the reader. */
 static adcgs_status read_back(adcgs_encode_live *e, const adcgs_buffer *out, size_t begin, adcgs_error *error)

@@ -15,8 +15,8 @@
 #include "scene/part.h"
 #include "train/train_config.h"
 
-#define ADCGS_PLAN_FORMAT 1
-#define ADCGS_PLAN_DIGEST 33 /**< hexadecimal digits and a zero */
+#define ADCGS_PLAN_FORMAT 1  /* number of the format; definition */
+#define ADCGS_PLAN_DIGEST 33 /**< hexadecimal digits of an MD5 and a zero; definition */
 #define ADCGS_NOTE_PLAN "plan"
 #define ADCGS_NOTE_FOLLOWS "follows"
 

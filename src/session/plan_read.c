@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Bounds of valid plans: seconds, and scene units of the world; chosen by hand, not measured. */
 #define SECONDS_MAX 1e9
 #define WORLD_MAX 1e12
 

@@ -18,7 +18,8 @@
 
 /*
  * Seconds of one processor with AVX-512: per iteration and possible anchor, per iteration and rendered pixel, and per pixel read.
- * Of the seven dynamic scenes in README.md's "Figures", six take 0.9 to 1.4 times this estimate, and one takes 0.4 times.
+ * Calibrated on the seven dynamic scenes in README.md's "Figures": six take 0.9 to 1.4 times this estimate, and one takes 0.4
+ * times.
  */
 #define PER_ANCHOR 4.5e-6
 #define PER_PIXEL 8e-8
