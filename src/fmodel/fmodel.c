@@ -9,6 +9,18 @@
 
 #include <math.h>
 
+/* Initial values; chosen by hand, not measured, except for OPACITY_START (doc/log/initialisation.md). */
+#define OPACITY_START (-2.0f) /* logit: opacity starts near 0.12; 0.5 and 0.05 lose on three scenes */
+#define ENTROPY_START 0.02f   /* gain of the last layers of the entropy networks */
+#define FV_START 0.1          /* standard deviation of f_v */
+#define TIME_START 0.7        /* amplitude of column 0 of the time table */
+#define TIME_FALL 0.3         /* column j has 1 / (1 + TIME_FALL j) of it */
+
+/* Steps of quantisers; chosen by hand, not measured. */
+#define STEP_REACH 64       /* maximum ratio of a trained step to its initial value, in both directions */
+#define LEVELS_USED 480     /* steps: largest magnitude that widening allows; a margin below ADCGS_LEVEL_MAX */
+#define STEP_LEAST 0x1p-20f /* magnitude below which values do not widen a step */
+
 const uint8_t adcgs_fmodel_role[ADCGS_P_COUNT] = {
     [ADCGS_P_THETA] = ADCGS_ROLE_PREDICTION,
     [ADCGS_P_OMEGA] = ADCGS_ROLE_COARSE,
@@ -112,7 +124,7 @@ static void start_time_table(adcgs_fmodel *f)
         memset(z + width, 0, (size_t)(columns - width) * sizeof *z); /* at rest */
         for (int j = 0; j < width; j++) {
             const double phase = 3.14159265358979 * (0.5 + j / 2) * (rows > 1 ? (double)r / (rows - 1) - 0.5 : 0);
-            z[j] = (float)((j % 2 ? cos(phase) : sin(phase)) * 0.7 / (1 + 0.3 * j));
+            z[j] = (float)((j % 2 ? cos(phase) : sin(phase)) * TIME_START / (1 + TIME_FALL * j));
         }
     }
 }
@@ -131,12 +143,12 @@ static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error 
             continue;
         ADCGS_TRY(adcgs_mlp_alloc(mlp, error));
         const int from_zero = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI || i == ADCGS_P_E_STEPS;
-        adcgs_mlp_start(mlp, f->param[i].p, i == ADCGS_P_THETA ? 1.0f : from_zero ? 0.0f : 0.02f, seed, (uint64_t)i);
+        adcgs_mlp_start(mlp, f->param[i].p, i == ADCGS_P_THETA ? 1.0f : from_zero ? 0.0f : ENTROPY_START, seed, (uint64_t)i);
     }
     start_time_table(f);
     const adcgs_mlp *theta = &f->mlp[ADCGS_P_THETA];
     float *b = f->param[ADCGS_P_THETA].p + theta->b[theta->hidden];
-    b[13] = -2.0f; /* opacity starts near 0.12 */
+    b[13] = OPACITY_START;
     return ADCGS_OK;
 }
 
@@ -166,11 +178,11 @@ static int channels_of(const adcgs_fmodel *f, int group)
 
 float adcgs_fmodel_finest_step(const adcgs_fmodel *f, int group, int channel)
 {
-    float most = 0x1p-20f;
+    float most = STEP_LEAST;
     for (int r = channel; r < adcgs_fmodel_rows(f, group); r += channels_of(f, group))
         for (uint32_t i = 0; i < f->n; i++)
             most = fmaxf(most, fabsf(*adcgs_fmodel_at(f, group, i, r)));
-    return most / 480;
+    return most / LEVELS_USED;
 }
 
 void adcgs_fmodel_widen_steps(adcgs_fmodel *f)
@@ -189,7 +201,7 @@ void adcgs_fmodel_take_steps(adcgs_fmodel *f)
 {
     if (f->follows) /* equal to the previous segment's, to the bit */
         return;
-    const float reach = logf(64);
+    const float reach = logf(STEP_REACH);
     for (int i = 0; i < ADCGS_P_ETA; i++) {
         const float middle = logf(first_step(f, i));
         for (int r = 0; r < adcgs_fmodel_rows(f, i); r++) {
@@ -278,7 +290,7 @@ adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params,
             f->keep[(i / ADCGS_LANES * params->k + (size_t)k) * ADCGS_LANES + i % ADCGS_LANES] = f->live[i];
     }
     for (size_t i = 0; i < f->param[ADCGS_P_FV].n; i++)
-        f->param[ADCGS_P_FV].p[i] = (float)(0.1 * adcgs_random_normal(seed, ADCGS_P_FV, i));
+        f->param[ADCGS_P_FV].p[i] = (float)(FV_START * adcgs_random_normal(seed, ADCGS_P_FV, i));
     for (size_t i = 0; params->spans && i < (size_t)f->groups * ADCGS_LANES; i++)
         f->param[ADCGS_P_SIGMA].p[(i / ADCGS_LANES * ADCGS_SIGMA_MAX + ADCGS_SPAN_PACE) * ADCGS_LANES + i % ADCGS_LANES] =
             ADCGS_SPAN_WHOLE;

@@ -77,7 +77,10 @@ typedef struct adcgs_fmodel {
     uint8_t density[ADCGS_GROUPS]; /**< shape of the density of each group of channels, as in adcgs_model.shape */
 } adcgs_fmodel;
 
-/** Pace of a lifetime around the middle of a segment that covers the whole segment: presence is 0.99 at its ends. */
+/**
+ * Pace of a lifetime around the middle of a segment that covers the whole segment: presence is 0.99 at its ends. Natural
+ * logarithm; arithmetic: exp(-(e^-0.5 / 2)^4) = 0.99.
+ */
 #define ADCGS_SPAN_WHOLE (-0.5f)
 
 /** Rows (features) per group of an anchor parameter. */

@@ -8,8 +8,8 @@
 
 #include "grad/dsp.h"
 
-#define ADCGS_MLP_LAYERS 4
-#define ADCGS_WEIGHT_STEP_NONE 127 /**< binary32 weights */
+#define ADCGS_MLP_LAYERS 4         /* largest number of layers of a network; definition */
+#define ADCGS_WEIGHT_STEP_NONE 127 /**< exponent that stands for binary32 weights; definition */
 
 /**
  * Shape of a network: inputs [own | time], hidden layers of equal width (leaky ReLU; from the second on residual), linear output.

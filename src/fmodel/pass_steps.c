@@ -8,7 +8,8 @@
 #include "base/fmath.h"
 #include "fmodel/pass_layout.h"
 
-static const float ln2 = 0.69314718f;
+static const float ln2 = 0.69314718f; /* arithmetic */
+/* Octaves: the largest factor of a step; definition of the format. */
 static const float octaves_max = ADCGS_STEP_INDEX_MAX / ADCGS_STEP_GAIN;
 
 int adcgs_pass_factor_of(const adcgs_fmodel *f, int group, int row)

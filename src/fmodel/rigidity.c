@@ -7,9 +7,13 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Neighbours; numbers of a rotation and a translation, geometry. */
 enum { NEAR = ADCGS_RIGIDITY_NEAR, PULL_ROWS = 12 };
 
-/** Stretch below which the energy is quadratic. Above it the cost grows slowly, so that parts may slide past each other. */
+/**
+ * Stretch below which the energy is quadratic. Above it the cost grows slowly, so that parts may slide past each other. Relative
+ * length; chosen by hand, not measured.
+ */
 #define SOFT 0.05f
 
 /* ---- Neighbourhoods ---- */

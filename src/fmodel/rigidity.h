@@ -10,6 +10,7 @@
 
 #include "fmodel/pass.h"
 
+/* Origin: chosen by hand, not measured. The weight of the energy is measured on synth_robot_dnerf (doc/log/motion.md). */
 #define ADCGS_RIGIDITY_CLOSE 4    /**< closest neighbours of an anchor */
 #define ADCGS_RIGIDITY_NEAR 8     /**< all neighbours: the closest, and farther ones, which keep whole parts from bending */
 #define ADCGS_RIGIDITY_REACH 0.2f /**< scene units: maximum distance of the farther ones */

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#define LOG2_E 1.44269504f
+#define LOG2_E 1.44269504f /* 1 / ln 2; arithmetic */
 #define COLUMNS_MAX ADCGS_NET_INPUTS_MAX
 
 /** A tensor [rows][cols]. `round`: magnitudes below it count quadratically, so that there is a gradient at 0. */
