@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-static const float black[3] = {0, 0, 0};
-/** Minimum coverage of a pixel; below it, the variance of depth is meaningless. */
+static const float black[3] = {0, 0, 0}; /* background; definition */
+/** Minimum coverage of a pixel; below it, the variance of depth is meaningless; chosen by hand, not measured. */
 static const float COVER_LEAST = 0.01f;
 
 void adcgs_distortion_clear(adcgs_distortion *d)

@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-/** Outputs of F_theta per primitive, of F_omega per anchor, of F_varpi per primitive. */
+/** Outputs of F_theta per primitive, of F_omega per anchor, of F_varpi per primitive; definition of the format. */
 enum { ADCGS_THETA_OUT = 14, ADCGS_OMEGA_OUT = 12, ADCGS_VARPI_OUT = 4 };
 
 /** Pose of a rigid body at a time: x maps to R(q) (x - centre) + to. */
@@ -61,7 +61,10 @@ typedef struct adcgs_rate_cell {
     float by_level; /**< derivative with respect to the level */
 } adcgs_rate_cell;
 
-/** Largest magnitude of a quantised value; one more cell, so that a value may lie between two cells. */
+/**
+ * Largest magnitude of a quantised value in training; one more cell, so that a value may lie between two cells. Steps; chosen by
+ * hand, not measured: more than twice the half-support of the coder's tables.
+ */
 enum { ADCGS_LEVEL_MAX = 500, ADCGS_RATE_CELLS = ADCGS_LEVEL_MAX + 2 };
 typedef struct adcgs_rate_table {
     adcgs_rate_cell cell[ADCGS_SIGMA_LEVELS][ADCGS_RATE_CELLS];
@@ -144,15 +147,20 @@ typedef struct adcgs_train_dsp {
     void (*adam)(float *p, float *g, float *m, float *v, size_t n, float lr, float c1, float c2);
 } adcgs_train_dsp;
 
-/** Gains between the entropy twins' outputs and the coder's quantities; the integer networks reproduce them by their shifts. */
+/**
+ * Gains between the entropy twins' outputs and the coder's quantities; the integer networks reproduce them by their shifts;
+ * definition of the format.
+ */
 #define ADCGS_MU_GAIN 16.0f
 #define ADCGS_SI_GAIN 8.0f
 #define ADCGS_SI_CENTRE 32.0f
-#define ADCGS_STEP_GAIN 8.0f /**< the output of E_q's twin is in octaves, of the integer network in eighths of octaves */
+/** The output of E_q's twin is in octaves, of the integer network in eighths of octaves; definition. */
+#define ADCGS_STEP_GAIN 8.0f
 
 /**
  * The integer networks in the twins' units. Weights, biases and activations are multiples of 2^-ADCGS_E24_BITS; weights and
  * activations are at most ADCGS_E24_MAX of them. Inputs are values in units of 16 steps, and multiples of a quarter of a step.
+ * Definition of the format.
  */
 enum { ADCGS_E24_BITS = 6, ADCGS_E24_MAX = 2047, ADCGS_E24_INPUT_SHIFT = 4 };
 
@@ -162,7 +170,7 @@ static inline float adcgs_bounded(float x, float lo, float hi)
     const float y = x > lo ? x : lo;
     return y < hi ? y : hi;
 }
-/** A mean in 1/64 step as stored by the passes: marked if the sigma level is 0, at which only the mean is coded. */
+/** A mean in 1/64 step as stored by the passes: marked if the sigma level is 0, at which only the mean is coded; definition. */
 #define ADCGS_MEAN_ALONE 0x1p18f
 static inline float adcgs_mean_pack(float mean, int alone)
 {

@@ -11,7 +11,10 @@
 #define LANES ADCGS_LANES
 #define INLINE static inline __attribute__((always_inline))
 
-/* ROWS, COLS: rows and vectors of columns whose sums stay in registers; PAIRS: pairs whose columns stay in the L1 cache. */
+/*
+ * ROWS, COLS: rows and vectors of columns whose sums stay in registers; PAIRS: pairs whose columns stay in the L1 cache.
+ * Arithmetic of the 32 registers and of caches of 32 KB.
+ */
 enum { ROWS = 6, COLS = 4, VN = 16, PAIRS = 64, OUTPUTS = 256 };
 
 /** A product's right side: pairs of rows of 64 columns. */

@@ -11,7 +11,7 @@
 
 #include <stdalign.h>
 
-/* Outputs and vectors of inputs whose products stay in registers during the loop over lanes. */
+/* Outputs and vectors of inputs whose products stay in registers during the loop over lanes; arithmetic of the registers. */
 enum { TILE_O = 6, TILE_V = VN == 16 ? 4 : 2, TILE_I = TILE_V * VN };
 
 #if VN > 1

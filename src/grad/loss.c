@@ -6,10 +6,10 @@
 
 #include "grad/loss_strip.h"
 
-#define CHANNELS 3
-#define STRIPS_MAX (CHANNELS * (16384 / ADCGS_LOSS_STRIP + 1))
-#define SIZE_MAX_PIXELS 16384
-/* Rows of a unit when there is no SSIM. */
+#define CHANNELS 3                                             /* red, green, blue; definition */
+#define STRIPS_MAX (CHANNELS * (16384 / ADCGS_LOSS_STRIP + 1)) /* strips of the largest image; arithmetic */
+#define SIZE_MAX_PIXELS 16384 /* pixels: maximum width and height; definition, as in the stream syntax */
+/* Rows of a unit when there is no SSIM; chosen by hand, not measured. */
 #define BAND 32
 
 struct adcgs_loss {

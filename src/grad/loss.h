@@ -13,7 +13,11 @@
 #include "base/cpu_detect.h"
 #include "base/thread_pool.h"
 
-#define ADCGS_LOSS_EVEN 0.1f /**< error at which the absolute and the squared error have the same gradient */
+/**
+ * Error at which the absolute and the squared error have the same gradient, values of 0 to 1. Chosen by hand; measured together
+ * with the share of squares (doc/log/training.md, "Squared errors for most of L1").
+ */
+#define ADCGS_LOSS_EVEN 0.1f
 
 typedef struct adcgs_loss adcgs_loss;
 /** w and q above, 0..1. */

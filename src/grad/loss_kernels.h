@@ -26,7 +26,7 @@
 
 #define HALO ADCGS_LOSS_HALO
 
-/* exp(-k^2/4.5) for k = 0..5, scaled to sum 1 over -5..5. */
+/* exp(-k^2/4.5) for k = 0..5, scaled to sum 1 over -5..5: the window of SSIM; literature (Wang et al. 2004). */
 #define G0 0.266011725f
 #define G1 0.213005538f
 #define G2 0.10936069f
@@ -34,6 +34,7 @@
 #define G4 0.00759875814f
 #define G5 0.00102838008f
 
+/* Stabilising constants of SSIM for values of 0 to 1; literature, likewise. */
 #define C1 (0.01f * 0.01f)
 #define C2 (0.03f * 0.03f)
 
@@ -43,7 +44,8 @@ enum { SUM_L1, SUM_MSE, SUM_SSIM };
 enum { LANES = ADCGS_LOSS_LANES, TURN = ADCGS_LOSS_TURN, RING = ADCGS_LOSS_RING, STRIPE = ADCGS_LOSS_STRIPE };
 enum {
     BEHIND = HALO + 1, /* rows by which gradients lag behind derivatives: the halo, and one to make it even */
-    AHEAD = 3          /* rows of prefetch; a strip's rows are too short for the hardware prefetcher */
+    /* Rows of prefetch, since a strip's rows are too short for the hardware prefetcher; chosen by hand, not measured. */
+    AHEAD = 3
 };
 _Static_assert(TURN + BEHIND + HALO <= RING, "the rows that a batch reads exist");
 

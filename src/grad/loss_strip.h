@@ -3,11 +3,11 @@
 #ifndef ADCGS_GRAD_LOSS_STRIP_H
 #define ADCGS_GRAD_LOSS_STRIP_H
 
-#define ADCGS_LOSS_HALO 5 /**< pixels: radius of the SSIM window */
-#define ADCGS_LOSS_LANES 16
-/** Maximum columns of a stripe; a strip has one stripe per lane. */
+#define ADCGS_LOSS_HALO 5   /**< pixels: radius of the SSIM window; literature (Wang et al. 2004) */
+#define ADCGS_LOSS_LANES 16 /* lanes of a vector of AVX-512; definition */
+/** Maximum columns of a stripe; a strip has one stripe per lane. Arithmetic of the caches, chosen by hand, not measured. */
 #define ADCGS_LOSS_STRIPE 14
-#define ADCGS_LOSS_SPAN (ADCGS_LOSS_LANES * ADCGS_LOSS_STRIPE)
+#define ADCGS_LOSS_SPAN (ADCGS_LOSS_LANES * ADCGS_LOSS_STRIPE) /* columns */
 /** Maximum columns of a strip: two windows in sequence need margins on both sides. */
 #define ADCGS_LOSS_STRIP (ADCGS_LOSS_SPAN - 4 * ADCGS_LOSS_HALO)
 
@@ -21,6 +21,7 @@ typedef struct adcgs_loss_strip {
     double l1, mse, ssim;                     /**< out: sums over the strip's pixels */
 } adcgs_loss_strip;
 
+/** Rows that are kept, a power of two, and rows of a batch; arithmetic of what a batch reads. */
 enum { ADCGS_LOSS_RING = 32, ADCGS_LOSS_TURN = 16 };
 
 /** A row of a strip in stripes: lane l of vector i is column l * stripe + i. */

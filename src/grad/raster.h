@@ -18,7 +18,7 @@ typedef struct adcgs_raster_grads {
     float *screen;
 } adcgs_raster_grads;
 
-#define ADCGS_GRAD_ROWS (ADCGS_ROWS + 2)
+#define ADCGS_GRAD_ROWS (ADCGS_ROWS + 2) /* rows of primitives, weight, screen; definition */
 /** All arrays in rows [ADCGS_GRAD_ROWS][n]: those of primitives, then weight and screen. */
 static inline adcgs_raster_grads adcgs_raster_grads_of(float *rows, size_t n)
 {

@@ -5,7 +5,10 @@
 
 #include "grad/raster.h"
 
-/* Sums over the pixels of a (splat, tile) pair, in the order of the twelve results of vf_sums(). e is alpha * dL/dalpha. */
+/*
+ * Sums over the pixels of a (splat, tile) pair, in the order of the twelve results of vf_sums(). e is alpha * dL/dalpha.
+ * Definition.
+ */
 enum {
     SUM_E = 0,   /* e */
     SUM_EX = 4,  /* e dx */

@@ -7,12 +7,17 @@
 
 #include <stdlib.h>
 
-/** Bits near the table's smallest probability, at which its differences are meaningless. */
+/**
+ * Bits near the table's smallest probability, at which its differences are meaningless; arithmetic: probabilities have 16 bits.
+ */
 #define FLAT_BITS 13
+#define SIGMA_LEAST 0.11 /* steps: sigma of level 0; definition of the format */
+#define SIGMA_MOST 64    /* steps: sigma of the last level; definition of the format */
+#define ASIDE 0.01       /* steps, and levels, to either side of a difference; chosen by hand, not measured */
 
 static double sigma_of(double level)
 {
-    return 0.11 * pow(64 / 0.11, level / (ADCGS_SIGMA_LEVELS - 1));
+    return SIGMA_LEAST * pow(SIGMA_MOST / SIGMA_LEAST, level / (ADCGS_SIGMA_LEVELS - 1));
 }
 
 static double upper_tail(double x)
@@ -48,7 +53,7 @@ static double by_value(int shape, int level, int a)
     if (a == 0)
         return 0;
     if (!is_live(shape, level, a))
-        return (smooth_bits(a + 0.01, level) - smooth_bits(a - 0.01, level)) / 0.02;
+        return (smooth_bits(a + ASIDE, level) - smooth_bits(a - ASIDE, level)) / 0.02;
     int high = a + reach;
     while (!is_live(shape, level, high))
         high--;
@@ -60,7 +65,7 @@ static double by_level(int shape, int level, int a)
     const int low = level > 0 && is_live(shape, level - 1, a) ? level - 1 : level;
     const int high = level < ADCGS_SIGMA_LEVELS - 1 && is_live(shape, level + 1, a) ? level + 1 : level;
     if (!is_live(shape, level, a) || low == high)
-        return (smooth_bits(a, level + 0.01) - smooth_bits(a, level - 0.01)) / 0.02;
+        return (smooth_bits(a, level + ASIDE) - smooth_bits(a, level - ASIDE)) / 0.02;
     return (table_bits(shape, high, a) - table_bits(shape, low, a)) / (high - low);
 }
 
