@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+/* Origin: chosen by hand, not measured. */
 #define LEAST 200   /* minimum iterations */
 #define SAFETY 0.85 /* share of the remaining time that is planned */
 #define GUARD 0.95  /* share of the remaining time at which the time limit lies */

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 
+/* Reports that were made, as bits; definition. */
 enum { GAPS = 1, DOUBLED = 2, LIGHT = 4, CLOCKS = 8, COPIED = 16, POSES = 32, TIMES = 64, AXES = 128 };
 
 /** A path relative to the scene's folder, if it lies there. */

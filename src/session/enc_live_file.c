@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define NUMBER_MAX 9999 /* most consecutive streams */
+#define NUMBER_MAX 9999 /* most consecutive streams; definition: four digits of a name */
 
 /** Returns the name of a stream's file, from malloc(): the number goes before the extension. */
 static char *number_name(const char *name, uint32_t number)

@@ -14,8 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#define AWAIT_NAP 100000000L /* nanoseconds */
-#define AWAIT_NAPS 900       /* a minute and a half: NFS refreshes its cache after one */
+#define AWAIT_NAP 100000000L /* nanoseconds between looks; chosen by hand, not measured */
+#define AWAIT_NAPS 900       /* looks, a minute and a half: NFS refreshes its cache after one */
 
 adcgs_status adcgs_enc_part_name(char **name, const char *base, uint32_t part, int is_stream, adcgs_error *error)
 {

@@ -10,8 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define EVERY 30.0 /* seconds */
-enum { SIDE_MOST = 800 };
+#define EVERY 30.0        /* seconds between previews; chosen by hand, not measured */
+enum { SIDE_MOST = 800 }; /* pixels: maximum width and height; chosen by hand, not measured */
 
 /** The middle validation view, which is not trained on, or the middle training view. Test views are never used. */
 static const adcgs_scene_view *choose(const adcgs_scene *scene)

@@ -9,8 +9,8 @@
 
 #include <time.h>
 
-#define NAP 10000000L  /* nanoseconds */
-#define TELL_EVERY 0.5 /* seconds between two progress notes of a segment */
+#define NAP 10000000L  /* nanoseconds between looks for a message; chosen by hand, not measured */
+#define TELL_EVERY 0.5 /* seconds between two progress notes of a segment; chosen by hand, not measured */
 
 adcgs_rank_note adcgs_rank_say(int kind, const adcgs_enc_job *job)
 {

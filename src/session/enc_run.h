@@ -10,9 +10,9 @@
 #include "session/enc_team.h"
 #include "session/plan.h"
 
-#define ADCGS_ENC_KEY_EVERY 10.0   /**< seconds from one key to the next, by default */
-#define ADCGS_ENC_FADE 0.2         /**< crossfade between segments, seconds, by default */
-#define ADCGS_ENC_LIVE_SEGMENT 2.0 /**< seconds of a live or planned segment, by default */
+#define ADCGS_ENC_KEY_EVERY 10.0   /**< seconds from one key to the next, by default; chosen by hand, not measured */
+#define ADCGS_ENC_FADE 0.2         /**< crossfade between segments, seconds, by default; measured on clip (doc/log/segments.md) */
+#define ADCGS_ENC_LIVE_SEGMENT 2.0 /**< seconds of a live or planned segment, by default; chosen by hand, not measured */
 
 /** As on the command line. */
 typedef struct adcgs_enc_options {

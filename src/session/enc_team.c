@@ -16,10 +16,10 @@
 
 /*
  * YIELDS: checks before a wait becomes long. NAP: nanoseconds between later checks. LONG_NAP: nanoseconds after NAPS checks,
- * since the awaited rank is then busy with something else.
+ * since the awaited rank is then busy with something else. Chosen by hand, not measured.
  */
 enum { YIELDS = 100, NAP = 50000, NAPS = 1000, LONG_NAP = 1000000 };
-/* Seconds after an interrupt: until the awaited rank is named, and until it counts as gone. */
+/* Seconds after an interrupt: until the awaited rank is named, and until it counts as gone; chosen by hand, not measured. */
 static const double NAMED_AFTER = 0.3, GONE_AFTER = 30;
 
 /* ---- Formation of teams ---- */

@@ -6,15 +6,19 @@
 
 #include <math.h>
 
+/* The scenes' own shape; chosen by hand, except for the geometry of GOLDEN. Other values make other scenes. */
 #define GOLDEN 0.3819660112501051 /* turns between consecutive cameras of a sphere: (3 - sqrt 5) / 2 */
-#define LOWEST (-0.35)            /* sines of the elevations of its lowest and highest camera */
-#define HIGHEST 0.95
-#define DRIVEN 8.0      /* units that the car drives in a clip */
-#define FRONT_ARC 0.083 /* turns of the arc of cameras in front of the target */
-#define SWEPT 2.0       /* units that the camera sweeps along x */
-#define BEHIND 10.0     /* units behind its path, the point where all optical axes meet */
+#define LOWEST (-0.35)            /* sine of the elevation of its lowest camera */
+#define HIGHEST 0.95              /* and of its highest camera */
+#define DRIVEN 8.0                /* units that the car drives in a clip */
+#define FRONT_ARC 0.083           /* turns of the arc of cameras in front of the target */
+#define SWEPT 2.0                 /* units that the camera sweeps along x */
+#define BEHIND 10.0               /* units behind its path, the point where all optical axes meet */
 
-/* By split: validation and test views lie between the training cameras; test views also lie between their times. */
+/*
+ * By split: validation and test views lie between the training cameras; test views also lie between their times. Steps from one
+ * camera, or time, to the next; chosen by hand.
+ */
 static const double between[ADCGS_SPLITS] = {0.0, 0.3, 0.5}, later[ADCGS_SPLITS] = {0.0, 0.0, 0.5};
 
 int adcgs_scenes_split_size(const adcgs_scenes_entry *scene, int split)

@@ -6,7 +6,7 @@
 #include "scene/scene.h"
 #include "synthetic/table.h"
 
-#define ADCGS_SCENES_ARC 0.39 /**< turns of the arc of training cameras */
+#define ADCGS_SCENES_ARC 0.39 /**< turns of the arc of training cameras; chosen by hand */
 
 typedef struct adcgs_scenes_view {
     adcgs_trace_camera camera;

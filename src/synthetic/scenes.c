@@ -15,18 +15,19 @@
 #include <stdio.h>
 #include <sys/stat.h>
 
-#define OBJECTS_MAX 32
-#define SAMPLES 3
-#define PATH_BYTES 4096
-#define FRAMES_MAX 100000
-#define CAMERAS_MAX 1000
-#define MOTION_MIN 0.001
-#define MOTION_MAX 10.0
-#define NOISE_MAX 64.0
-#define NOISE_SEED 29
-#define WATCH_MAX 1000
-#define ASIDE_MAX 0.5
-/* The layout needs the angle: 2 atan(1 / ADCGS_SCENES_FOCAL), 2 atan(1 / ADCGS_SCENES_WIDE). */
+/* Bounds of options and sizes; chosen by hand. */
+#define OBJECTS_MAX 32    /* objects of a scene */
+#define SAMPLES 3         /* rays along a side of a pixel, where a scene says nothing else */
+#define PATH_BYTES 4096   /* bytes of a file name */
+#define FRAMES_MAX 100000 /* frames */
+#define CAMERAS_MAX 1000  /* cameras */
+#define MOTION_MIN 0.001  /* factor of the scene's motion */
+#define MOTION_MAX 10.0   /* the same */
+#define NOISE_MAX 64.0    /* levels of 255 */
+#define NOISE_SEED 29     /* any number */
+#define WATCH_MAX 1000    /* views of --watch */
+#define ASIDE_MAX 0.5     /* turns: --aside */
+/* The layout needs the angle, radians: 2 atan(1 / ADCGS_SCENES_FOCAL), 2 atan(1 / ADCGS_SCENES_WIDE); geometry. */
 #define CAMERA_ANGLE_X "0.7610127542247298"
 #define CAMERA_ANGLE_WIDE "1.3494818844471053"
 

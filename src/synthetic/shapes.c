@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#define HAIR_LINKS 8
+#define HAIR_LINKS 8 /* straight links of a strand of hair; chosen by hand */
 
 static double hit_ball(const double o[3], const double d[3], double radius, double normal[3])
 {

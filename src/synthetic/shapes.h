@@ -5,7 +5,7 @@
 
 #include "synthetic/trace.h"
 
-#define ADCGS_SHAPES_FAR 1e30
+#define ADCGS_SHAPES_FAR 1e30 /* scene units: beyond everything; arithmetic */
 
 /**
  * Smallest t > 0 where the ray o + t d meets the object, in its local coordinates, and the normal there; else ADCGS_SHAPES_FAR.

@@ -2,7 +2,7 @@
 /** \file Sine and cosine without a library. */
 #include "synthetic/sine.h"
 
-#define PI 3.14159265358979323846
+#define PI 3.14159265358979323846 /* geometry */
 
 /* Odd Taylor polynomial of the sine within a quarter turn of zero; its error there is below 1e-11. */
 static double sin_core(double x)

@@ -8,9 +8,9 @@
 
 #include <stdlib.h>
 
-#define SEED 131u
-#define TURN (2.0 * 3.14159265358979323846)
-#define NAME_BYTES 16
+#define SEED 131u                           /* of the random numbers; any number */
+#define TURN (2.0 * 3.14159265358979323846) /* radians; geometry */
+#define NAME_BYTES 16                       /* bytes of a fault's name; definition */
 
 /* One row per kind. */
 static const struct {

@@ -52,6 +52,7 @@ static const adcgs_trace_object stage[] = {
      .orbit_turns = 0.40},
 };
 
+/* Moving objects of the demo, as bits by their places; definition. */
 enum { HOP = 1 << 6, SPIN = 1 << 7, PASS = 1 << 8, FADE = 1 << 9, ORBIT = 1 << 10 };
 
 /* A few objects that are easy to train. */
@@ -68,7 +69,7 @@ static const adcgs_trace_object mini[] = {
 
 /* ---- Motion of a known size: an object with texture to follow, on the demo's table ---- */
 
-#define DISTANCE 4.2
+#define DISTANCE 4.2 /* scene units from the cameras to the target; chosen by hand */
 #define VISIBLE (DISTANCE * 2.0 / ADCGS_SCENES_FOCAL) /* the image's width at the target */
 
 /* A parcel: patches of 5 pixels at the images' default size, with grain. */

@@ -8,8 +8,8 @@
 
 #include "synthetic/trace.h"
 
-#define ADCGS_SCENES_FOCAL 2.5 /**< focal length, in halves of the image's width */
-#define ADCGS_SCENES_WIDE 1.25 /**< the same for scenes that surround their cameras */
+#define ADCGS_SCENES_FOCAL 2.5 /**< focal length, in halves of the image's width; chosen by hand */
+#define ADCGS_SCENES_WIDE 1.25 /**< the same for scenes that surround their cameras; chosen by hand */
 
 /** Arrangement of a scene's cameras. */
 typedef enum adcgs_scenes_path {

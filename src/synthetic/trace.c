@@ -9,8 +9,8 @@
 
 #include <math.h>
 
-#define SAMPLES_MAX 8
-#define DEPTH_MAX 6 /* limit of surfaces on a ray's path: transparent or mirroring ones, and the last */
+#define SAMPLES_MAX 8 /* rays along a side of a pixel; chosen by hand */
+#define DEPTH_MAX 6   /* limit of surfaces on a ray's path: transparent or mirroring ones, and the last */
 
 /* An object at one time. */
 typedef struct pose {

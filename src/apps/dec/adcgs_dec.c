@@ -24,7 +24,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define SOUND_SLACK 0.02 /* seconds between the sound and the last frame, at most */
+#define SOUND_SLACK 0.02 /* seconds between the sound and the last frame, at most; chosen by hand, not measured */
 
 typedef adcgs_dec_settings settings;
 

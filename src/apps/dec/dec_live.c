@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define BUFFER_BYTES 65536
+#define BUFFER_BYTES 65536 /* bytes read at a time; chosen by hand, not measured */
 
 /** Waits for bytes and reads the available ones. */
 static adcgs_status fill(adcgs_live *live, adcgs_error *error)

@@ -17,7 +17,8 @@
 
 #include <adcgs/decoder.h>
 
-#define STREAM_BYTES_MAX ((uint64_t)1 << 32) /* the player keeps the bytes to open the stream with other layers */
+/* Bytes, which the player keeps to open the stream with other layers; chosen by hand, not measured. */
+#define STREAM_BYTES_MAX ((uint64_t)1 << 32)
 
 /** Collects the stream's properties for the player. The caller frees the cameras. */
 static adcgs_status collect_properties(const adcgs_dec_play *how, adcgs_decoder *decoder, adcgs_play_settings *settings,

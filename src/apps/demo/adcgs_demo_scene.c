@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#define SCENES_MAX 128 /* scenes that completion offers */
+#define SCENES_MAX 128 /* scenes that completion offers; definition, above the scenes there are */
 
 /** As on the command line. */
 typedef struct arguments {

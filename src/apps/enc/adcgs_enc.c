@@ -189,7 +189,7 @@ static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_context *w, adcgs_scen
     return o->uncompressed ? check_writable(o->uncompressed, error) : ADCGS_OK;
 }
 
-#define PART_NAME 20 /* most bytes that a part's name adds to the state's: ".<number>.adcgs" */
+#define PART_NAME 20 /* most bytes that a part's name adds to the state's: ".<number>.adcgs"; arithmetic */
 
 /** Names the run's state: the file of --checkpoint, else the one that the run continues, else one next to its output. */
 static adcgs_status name_base(adcgs_enc_context *w, adcgs_error *error)
@@ -295,7 +295,7 @@ static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, con
 
 /* ---- The program ---- */
 
-#define OPERANDS_MAX 1000000
+#define OPERANDS_MAX 1000000 /* operands of a command; chosen by hand, not measured */
 
 static const adcgs_cli program = {
     .program = "adcgs-enc",

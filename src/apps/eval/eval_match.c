@@ -13,8 +13,9 @@
 #include <math.h>
 
 #define PLACE_WITHIN 1e-3 /* scene units, and elements of rotations: streams store poses in binary32, scenes in decimal digits */
-#define LENS_WITHIN 0.02  /* of focal length per width: images may have been reduced */
-#define PSNR_OF_NOTHING 10.0
+/* Of focal length per width: images may have been reduced; chosen by hand, not measured. */
+#define LENS_WITHIN 0.02
+#define PSNR_OF_NOTHING 10.0 /* dB below which a stream shows another scene; chosen by hand, not measured */
 
 static int is_same_place(const adcgs_camera *a, const adcgs_camera *b, double scale)
 {

@@ -9,8 +9,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define NAME_WIDTH 24
-#define ALWAYS 0
+#define NAME_WIDTH 24           /* columns of a name in the table; chosen by hand, not measured */
+#define ALWAYS 0                /* no flag is needed; definition */
 #define CROP ADCGS_EVAL_COLUMNS /* beyond all flags */
 
 /**

@@ -11,14 +11,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define FRAMES 300 /* default number of frames of a moving camera */
-#define TEST_EVERY 8
+#define FRAMES 300   /* default number of frames of a moving camera; chosen by hand, not measured */
+#define TEST_EVERY 8 /* one in so many images is held out; literature (LLFF, Mip-NeRF 360) */
 
-/* Thresholds of the warnings about poses. SPREAD_FINE: poses of a static camera, as a share of the rig's size. */
-#define POSED_WELL 0.8 /* images with a pose, share */
-#define ERROR_FINE 1.5 /* mean reprojection error, pixels */
-#define TRACK_FINE 3.0 /* images per point */
-#define SPREAD_FINE 0.02
+/* Thresholds of the warnings about poses; chosen by hand, not measured. */
+#define POSED_WELL 0.8   /* images with a pose, share */
+#define ERROR_FINE 1.5   /* mean reprojection error, pixels */
+#define TRACK_FINE 3.0   /* images per point */
+#define SPREAD_FINE 0.02 /* poses of a static camera, share of the rig's size */
 
 typedef struct arguments {
     adcgs_import_options import;

@@ -27,7 +27,7 @@ typedef struct adcgs_info_component {
     uint64_t bytes;
 } adcgs_info_component;
 
-#define ADCGS_INFO_COMPONENTS 10
+#define ADCGS_INFO_COMPONENTS 10 /* kinds of bytes in a stream; definition */
 
 void adcgs_info_list_components(const adcgs_bytes *bytes, adcgs_info_component out[ADCGS_INFO_COMPONENTS]);
 uint32_t adcgs_info_count_gaussians(const adcgs_model *model);

@@ -14,8 +14,9 @@
 
 #include <stdlib.h>
 
-#define PAGE_BYTES_MAX ((uint64_t)64 << 20)
-#define STREAM_BYTES_MAX ((uint64_t)1 << 30) /* more than browsers open as one page */
+#define PAGE_BYTES_MAX ((uint64_t)64 << 20) /* bytes of the page without a scene; chosen by hand, not measured */
+/* Bytes: more than browsers open as one page; chosen by hand, not measured. */
+#define STREAM_BYTES_MAX ((uint64_t)1 << 30)
 
 typedef struct settings {
     const adcgs_cli *cli;

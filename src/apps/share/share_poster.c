@@ -16,9 +16,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define POSTER_PIXELS (640.0 * 360.0)
+/* Chosen by hand, not measured. */
+#define POSTER_PIXELS (640.0 * 360.0)       /* pixels of a rendered poster */
 #define POSTER_BYTES 12000                  /* wanted size of a rendered poster */
 #define POSTER_FILE_MAX ((uint64_t)2 << 20) /* bytes of a poster from a file */
+/* JPEG qualities, tried in this order until the poster is small enough. */
 static const int qualities[] = {80, 70, 60, 50, 40, 30};
 
 /** The camera of the page's first view, at the poster's size. */

@@ -22,7 +22,9 @@
 
 #define BLANKS " \t\r\n"
 #define DIGITS "0123456789"
-/* Numbers after the word "camera" and its two integers: fx, fy, cx, cy, near plane and twelve of the matrix. */
+/*
+ * Numbers after the word "camera" and its two integers: fx, fy, cx, cy, near plane and twelve of the matrix; definition.
+ */
 #define CAMERA_NUMBERS 17
 
 const char *adcgs_fault_class(adcgs_status status)

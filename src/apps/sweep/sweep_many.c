@@ -14,9 +14,9 @@
 #include <unistd.h>
 
 #define WORDS "command.txt" /* the sweep's command line, one word a line */
-#define WORDS_MAX 100000
-#define ALL "sweep"     /* name of the claim on all runs */
-#define TABLES "tables" /* name of the claim on the tables */
+#define WORDS_MAX 100000    /* words of a command line; chosen by hand, not measured */
+#define ALL "sweep"         /* name of the claim on all runs */
+#define TABLES "tables"     /* name of the claim on the tables */
 
 /* ---- Claims ---- */
 

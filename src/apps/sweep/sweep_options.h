@@ -6,7 +6,7 @@
 #include "apps/sweep/sweep.h"
 #include "cli/cli.h"
 
-#define ADCGS_SWEEP_OPTIONS 32
+#define ADCGS_SWEEP_OPTIONS 32 /* options that define a sweep; definition */
 
 /** The options that define a sweep, with their values, without those for its execution. */
 typedef struct adcgs_sweep_words {

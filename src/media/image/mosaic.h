@@ -5,8 +5,8 @@
 
 #include "media/image/image.h"
 
-#define ADCGS_MOSAIC_GAP 4 /**< pixels */
-/** Gain of a difference, shown around grey. */
+#define ADCGS_MOSAIC_GAP 4 /**< pixels between images; chosen by hand, not measured */
+/** Gain of a difference, shown around grey; chosen by hand, not measured. */
 #define ADCGS_MOSAIC_GAIN 4.0f
 
 typedef struct adcgs_mosaic {
