@@ -12,7 +12,7 @@
 #if defined(__AVX512F__)
 #include <immintrin.h>
 typedef __m512 vec;
-#define VN 16
+#define VN 16 /* lanes of a vector; definition */
 #define vzero _mm512_setzero_ps
 #define vspread _mm512_set1_ps
 #define vload _mm512_load_ps
@@ -25,7 +25,7 @@ typedef __m512 vec;
 #elif defined(__AVX2__)
 #include <immintrin.h>
 typedef __m256 vec;
-#define VN 8
+#define VN 8 /* lanes of a vector; definition */
 #define vzero _mm256_setzero_ps
 #define vspread _mm256_set1_ps
 #define vload _mm256_load_ps
@@ -42,7 +42,7 @@ static inline vec vslope(vec x, uint64_t below)
 }
 #else
 typedef float vec;
-#define VN 1
+#define VN 1 /* lanes of a vector; definition */
 #define vzero() 0.0f
 #define vspread(x) (x)
 #define vload(p) (*(p))

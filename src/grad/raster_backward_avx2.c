@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Kernels of the backward pass of the renderer, AVX2 variant. */
-#define ADCGS_LANES_ISA 256
+#define ADCGS_LANES_ISA 256 /* bits of a vector; definition */
 #include "base/lanes.h"
 
 #include "grad/raster_blend_kernels.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Kernels of the backward pass of the renderer, portable variant. */
-#define ADCGS_LANES_ISA 0
+#define ADCGS_LANES_ISA 0 /* no vectors; definition */
 #include "base/lanes.h"
 
 #include "grad/raster_blend_kernels.h"

@@ -46,7 +46,10 @@ adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *sce
                                    adcgs_error *error);
 void adcgs_stereo_rig_clear(adcgs_stereo_rig *rig);
 
-/** Levels of 255: maximum difference from the background without motion; 9 and 6 gain nothing on zju (doc/log/matching.md). */
+/**
+ * Levels of 255: maximum difference from the background without motion; calibrated on zju, where 9 and 6 gain nothing
+ * (doc/log/matching.md).
+ */
 enum { ADCGS_STEREO_MOVED = 18 };
 
 /** True if a pixel differs from the background in a frame. The frame must have an image. */

@@ -16,7 +16,7 @@
 #include "base/thread_pool.h"
 #include "scene/scene.h"
 
-/** Maximum number of matched frames; with 24, no body of the demo is found (doc/log/bodies.md). */
+/** Maximum number of matched frames; calibrated on demo, where 24 find no body (doc/log/bodies.md). */
 enum { ADCGS_MATCHING_FRAMES_MAX = 48 };
 
 /** Relation of a moving point to the static surfaces. */

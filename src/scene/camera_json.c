@@ -114,7 +114,7 @@ adcgs_status adcgs_json_fps(const adcgs_json_place *at, const char *field, adcgs
 
 /* ---- Camera models ---- */
 
-enum { N_TERMS = 8 };
+enum { N_TERMS = 8 }; /* coefficients of a lens; literature: OpenCV's model */
 static const char *const terms[N_TERMS] = {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"};
 
 /** A camera model, with the number of its coefficients among k1 .. k6 and among p1, p2. */

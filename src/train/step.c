@@ -15,12 +15,11 @@ enum {
 };
 #define ADAM_BETA1 0.9f   /* decay of the mean gradient; literature (Kingma and Ba 2015) */
 #define ADAM_BETA2 0.999f /* decay of the mean square; likewise; 0.99 loses 0.1 dB on demo (doc/log/training.md) */
-/* Decays of the running means, over the first EARLY iterations and later; chosen by hand, not measured. */
-#define KEEP_EARLY 0.9
-#define KEEP 0.99
-#define EARLY 100      /* iterations; chosen by hand, not measured */
-#define BITS_KEEP 0.95 /* decay of the running mean of bits; chosen by hand, not measured */
-#define BITS_NEW 0.05  /* 1 - BITS_KEEP */
+#define KEEP_EARLY 0.9    /* decay of the running means in the first EARLY iterations; chosen by hand, not measured */
+#define KEEP 0.99         /* and later; chosen by hand, not measured */
+#define EARLY 100         /* iterations; chosen by hand, not measured */
+#define BITS_KEEP 0.95    /* decay of the running mean of bits; chosen by hand, not measured */
+#define BITS_NEW 0.05     /* 1 - BITS_KEEP */
 
 static int is_network(int group)
 {
