@@ -198,7 +198,7 @@ static void threads_do_not_show(void **state)
     adcgs_pool_free(&pool);
 }
 
-static void what_changes_its_looks_is_none(void **state)
+static void test_flickering_body_is_refused(void **state)
 {
     adcgs_stereo s;
     flickers = 1;
@@ -246,7 +246,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_are_followed),
         cmocka_unit_test(threads_do_not_show),
-        cmocka_unit_test(what_changes_its_looks_is_none),
+        cmocka_unit_test(test_flickering_body_is_refused),
         cmocka_unit_test(a_shadow_is_none),
     };
     return cmocka_run_group_tests(tests, put_scene, remove_scene);

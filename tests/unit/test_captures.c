@@ -89,7 +89,7 @@ static void a_dome_is_seen_from_all_round(void **state)
     assert_in_range(below, 6, 20);
 }
 
-static void other_paths_are_what_they_say(void **state)
+static void test_shapes_of_other_paths(void **state)
 {
     static const double room[3] = {0.0, 0.0, 1.35};
     double beside;
@@ -306,7 +306,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(axes_of_a_sweep_diverge),
         cmocka_unit_test(a_dome_is_seen_from_all_round),
-        cmocka_unit_test(other_paths_are_what_they_say),
+        cmocka_unit_test(test_shapes_of_other_paths),
         cmocka_unit_test(exposures_are_even),
         cmocka_unit_test(alpha_is_real_and_exposure_leaves_it),
         cmocka_unit_test(grounds_are_composited_after_exposure),

@@ -112,7 +112,7 @@ static void time_begins_where_the_next_does(void **state)
 }
 
 /** Prediction from the model before is possible. At least the frozen anchors are predicted, and they stay to the bit. */
-static void what_is_settled_is_kept(void **state)
+static void test_frozen_anchors_are_predicted(void **state)
 {
     const adcgs_train_config config = follow_config();
     adcgs_model before, model;
@@ -177,7 +177,7 @@ static void stopping_changes_nothing(void **state)
 }
 
 /** Frozen static anchors that became darker than the images are unfrozen, except those that no image shows. */
-static void what_has_changed_learns(void **state)
+static void test_changed_anchors_are_unfrozen(void **state)
 {
     const adcgs_train_config config = follow_config();
     adcgs_model before;
@@ -329,9 +329,12 @@ static void bodies_are_found_again(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(float_models_come_back),  cmocka_unit_test(time_begins_where_the_next_does),
-        cmocka_unit_test(what_is_settled_is_kept), cmocka_unit_test(stopping_changes_nothing),
-        cmocka_unit_test(what_has_changed_learns), cmocka_unit_test(bodies_are_found_again),
+        cmocka_unit_test(float_models_come_back),
+        cmocka_unit_test(time_begins_where_the_next_does),
+        cmocka_unit_test(test_frozen_anchors_are_predicted),
+        cmocka_unit_test(stopping_changes_nothing),
+        cmocka_unit_test(test_changed_anchors_are_unfrozen),
+        cmocka_unit_test(bodies_are_found_again),
     };
     return cmocka_run_group_tests(tests, open_scene, close_scene);
 }

@@ -156,7 +156,7 @@ static void lambda_is_sought(void **state)
 }
 
 /** A quality missed at the end causes one more run with a smaller lambda. A quality that is met, or missed again, does not. */
-static void what_was_missed_is_tried_again(void **state)
+static void test_missed_quality_is_tried_again(void **state)
 {
     const adcgs_train_config config = config_for(ADCGS_TARGET_PSNR, 30);
     for (int missed = 0; missed < 2; missed++) {
@@ -284,7 +284,7 @@ int main(void)
         cmocka_unit_test(sizes_too_small_are_refused),
         cmocka_unit_test(lambda_follows_the_bytes),
         cmocka_unit_test(lambda_is_sought),
-        cmocka_unit_test(what_was_missed_is_tried_again),
+        cmocka_unit_test(test_missed_quality_is_tried_again),
         cmocka_unit_test(runs_land_on_sizes),
         cmocka_unit_test(runs_land_without_rounding),
         cmocka_unit_test(runs_land_on_qualities),

@@ -104,7 +104,7 @@ static void faint_primitives_go(void **state)
 }
 
 /** In a scene made of faint primitives, pruning removes at most a tenth of the rendered weight: the faintest primitives. */
-static void what_faint_primitives_make_stays(void **state)
+static void test_faint_scene_is_kept(void **state)
 {
     const adcgs_train_config config = all_stages_config();
     adcgs_trainer *t = make_faint(&config, 10);
@@ -159,7 +159,7 @@ static void faint_layers_move_together(void **state)
 }
 
 /** Anchors in regions where no camera's images change become static, independent of the networks' motion. The others move. */
-static void what_never_changes_is_static(void **state)
+static void test_unchanging_regions_are_static(void **state)
 {
     adcgs_train_config config = all_stages_config();
     config.min_mean_opacity = 0;
@@ -270,9 +270,9 @@ int main(void)
         cmocka_unit_test(densification_keeps_order_and_budget),
         cmocka_unit_test(densification_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),
-        cmocka_unit_test(what_faint_primitives_make_stays),
+        cmocka_unit_test(test_faint_scene_is_kept),
         cmocka_unit_test(faint_layers_move_together),
-        cmocka_unit_test(what_never_changes_is_static),
+        cmocka_unit_test(test_unchanging_regions_are_static),
         cmocka_unit_test(missing_things_are_found),
     };
     return cmocka_run_group_tests_name("densify", tests, open_scene, close_scene);

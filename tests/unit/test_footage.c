@@ -42,7 +42,7 @@ static void of_little_nothing_is_said(void **state)
     expect_silence(all);
 }
 
-static void what_is_not_known_says_nothing(void **state)
+static void test_unknown_cells_are_ignored(void **state)
 {
     (void)state;
     begin();
@@ -116,7 +116,7 @@ static void gaps_of_all_are_the_scenes(void **state)
 }
 
 /* For one moving camera, frames set aside for tests do not count as missing. */
-static void what_was_put_aside_is_no_gap(void **state)
+static void test_held_out_frames_are_no_gap(void **state)
 {
     static adcgs_scene_view aside[4];
     adcgs_scene scene = {.directory = "here", .views = {film.views, NULL, aside}, .n_views = {0, 0, 4}};
@@ -191,7 +191,7 @@ static void doubled_pictures_are_of_the_time_before(void **state)
 }
 
 /* A movement to and fro may rest where it turns. */
-static void what_turns_may_rest(void **state)
+static void test_oscillation_may_rest(void **state)
 {
     (void)state;
     for (int back = 0; back < 2; back++) {
@@ -203,7 +203,7 @@ static void what_turns_may_rest(void **state)
 }
 
 /* One moving camera took all images. A duplicate comes with another pose. */
-static void doubled_pictures_of_one_that_moves(void **state)
+static void test_duplicates_of_moving_camera(void **state)
 {
     (void)state;
     film_twice(2, 0.0, 1);
@@ -259,7 +259,7 @@ static void pictures_of_others_are_found(void **state)
 }
 
 /* Two cameras at one place before a strongly changing scene; then a slate, or a lens cap, before all cameras. */
-static void what_all_see_is_no_copy(void **state)
+static void test_common_image_is_no_copy(void **state)
 {
     (void)state;
     begin();
@@ -312,7 +312,7 @@ static void film_anything(uint32_t seed, int cameras, int turns, int moves)
         }
 }
 
-static void what_moves_as_it_likes_has_no_fault(void **state)
+static void test_random_motion_has_no_fault(void **state)
 {
     (void)state;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
@@ -327,7 +327,7 @@ static void what_moves_as_it_likes_has_no_fault(void **state)
  * Masked pixels, which are NaN in images, have no effect. A bright sign over most of the image is no step of light and hides
  * none. Two images that differ in the sign alone are duplicates.
  */
-static void what_is_masked_does_not_count(void **state)
+static void test_masked_pixels_are_ignored(void **state)
 {
     enum { SIDE = 64, PLANE = SIDE * SIDE };
     static float rgb[2][3 * PLANE];
@@ -356,18 +356,18 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(of_little_nothing_is_said),
-        cmocka_unit_test(what_is_not_known_says_nothing),
+        cmocka_unit_test(test_unknown_cells_are_ignored),
         cmocka_unit_test(gaps_are_found),
         cmocka_unit_test(gaps_of_all_are_the_scenes),
-        cmocka_unit_test(what_was_put_aside_is_no_gap),
+        cmocka_unit_test(test_held_out_frames_are_no_gap),
         cmocka_unit_test(doubled_pictures_are_found),
         cmocka_unit_test(doubled_pictures_are_of_the_time_before),
-        cmocka_unit_test(what_turns_may_rest),
-        cmocka_unit_test(doubled_pictures_of_one_that_moves),
+        cmocka_unit_test(test_oscillation_may_rest),
+        cmocka_unit_test(test_duplicates_of_moving_camera),
         cmocka_unit_test(pictures_of_others_are_found),
-        cmocka_unit_test(what_all_see_is_no_copy),
-        cmocka_unit_test(what_moves_as_it_likes_has_no_fault),
-        cmocka_unit_test(what_is_masked_does_not_count),
+        cmocka_unit_test(test_common_image_is_no_copy),
+        cmocka_unit_test(test_random_motion_has_no_fault),
+        cmocka_unit_test(test_masked_pixels_are_ignored),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -128,7 +128,7 @@ static void holes_are_closed(void **state)
 }
 
 /** A view that sees no motion removes everything. If everything moves, there is no evidence, and the search ends soon. */
-static void what_says_nothing(void **state)
+static void test_no_hull_without_evidence(void **state)
 {
     put_ball();
     memset(mask[1], 0, sizeof mask[1]);
@@ -150,7 +150,7 @@ int main(void)
         cmocka_unit_test(a_ball_has_its_surface),
         cmocka_unit_test(points_look_as_who_sees_them),
         cmocka_unit_test(holes_are_closed),
-        cmocka_unit_test(what_says_nothing),
+        cmocka_unit_test(test_no_hull_without_evidence),
     };
     return cmocka_run_group_tests(tests, put_views, NULL);
 }

@@ -56,7 +56,7 @@ static void steps_of_light_are_found(void **state)
 }
 
 /* The step of more than half of the cells deviates by a third to either side: the content has changed, not the light. */
-static void what_moves_is_no_light(void **state)
+static void test_moving_content_is_no_light(void **state)
 {
     (void)state;
     for (int spread = 0; spread < 2; spread++) {
@@ -151,7 +151,7 @@ static void steps_of_light_are_evened(void **state)
 }
 
 /* A second step adds to the first. Where too few cells have a value, and for a camera of few images, there is no correction. */
-static void what_is_evened_adds_up(void **state)
+static void test_corrections_add_up(void **state)
 {
     (void)state;
     film_light(ADCGS_LIGHT_BRIGHTER, 0.3, 4, 99, 0, 3);
@@ -209,7 +209,7 @@ static void clocks_that_are_off_are_found(void **state)
     expect_silence("c");
 }
 
-static void too_little_tells_no_clock(void **state)
+static void test_few_changes_report_no_clock(void **state)
 {
     (void)state;
     film_clocks(4, 12, 0, 0, 30); /* eleven changes are too few */
@@ -223,7 +223,7 @@ static void too_little_tells_no_clock(void **state)
 }
 
 /* Periodic motion fits several time offsets. */
-static void what_repeats_tells_no_clock(void **state)
+static void test_periodic_motion_reports_no_clock(void **state)
 {
     (void)state;
     begin();
@@ -236,11 +236,15 @@ static void what_repeats_tells_no_clock(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_of_light_are_found),        cmocka_unit_test(what_moves_is_no_light),
-        cmocka_unit_test(steps_of_light_are_evened),       cmocka_unit_test(what_is_evened_adds_up),
-        cmocka_unit_test(light_that_changes_all_the_time), cmocka_unit_test(the_greatest_step_is_told),
-        cmocka_unit_test(clocks_that_are_off_are_found),   cmocka_unit_test(too_little_tells_no_clock),
-        cmocka_unit_test(what_repeats_tells_no_clock),
+        cmocka_unit_test(steps_of_light_are_found),
+        cmocka_unit_test(test_moving_content_is_no_light),
+        cmocka_unit_test(steps_of_light_are_evened),
+        cmocka_unit_test(test_corrections_add_up),
+        cmocka_unit_test(light_that_changes_all_the_time),
+        cmocka_unit_test(the_greatest_step_is_told),
+        cmocka_unit_test(clocks_that_are_off_are_found),
+        cmocka_unit_test(test_few_changes_report_no_clock),
+        cmocka_unit_test(test_periodic_motion_reports_no_clock),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -68,7 +68,7 @@ static void a_film_is_matched(void **state)
 }
 
 /** The table's top is at z = 0 and covers most of the image. */
-static void what_is_still_lies_where_it_is(void **state)
+static void test_places_of_static_points(void **state)
 {
     uint32_t on_table = 0, below = 0;
     (void)state;
@@ -85,7 +85,7 @@ static void what_is_still_lies_where_it_is(void **state)
 }
 
 /** In most frames the moving points are about the box, and move as it does. */
-static void what_moves_is_where_it_is(void **state)
+static void test_places_of_moving_points(void **state)
 {
     uint32_t good = 0, first = 0, last;
     double speed = 0;
@@ -114,8 +114,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_film_is_matched),
-        cmocka_unit_test(what_is_still_lies_where_it_is),
-        cmocka_unit_test(what_moves_is_where_it_is),
+        cmocka_unit_test(test_places_of_static_points),
+        cmocka_unit_test(test_places_of_moving_points),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

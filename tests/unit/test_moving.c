@@ -48,7 +48,7 @@ static int close_scene(void **state)
 
 /* ---- The measure ---- */
 
-static void only_what_moves_counts(void **state)
+static void test_only_moving_pixels_count(void **state)
 {
     enum { N = 20 };
     uint8_t moving[N] = {0};
@@ -124,7 +124,7 @@ static void masks_are_of_the_moment(void **state)
     }
 }
 
-static void what_is_still_has_no_masks(void **state)
+static void test_static_scene_has_no_masks(void **state)
 {
     open_scene("still", 8, 0);
     for (int split = 0; split < ADCGS_SPLITS; split++)
@@ -229,7 +229,7 @@ static void views_of_a_fixed_camera(void **state)
 }
 
 /** A mask that was deleted after the scene was opened. */
-static void a_mask_that_is_gone(void **state)
+static void test_missing_mask(void **state)
 {
     adcgs_scene_view *views = open_views();
     unlink(views[2].moving);
@@ -240,12 +240,12 @@ static void a_mask_that_is_gone(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(only_what_moves_counts),
+        cmocka_unit_test(test_only_moving_pixels_count),
         cmocka_unit_test_teardown(masks_are_of_the_moment, close_scene),
-        cmocka_unit_test_teardown(what_is_still_has_no_masks, close_scene),
+        cmocka_unit_test_teardown(test_static_scene_has_no_masks, close_scene),
         cmocka_unit_test_teardown(views_of_moving_cameras, close_scene),
         cmocka_unit_test_teardown(views_of_a_fixed_camera, close_scene),
-        cmocka_unit_test_teardown(a_mask_that_is_gone, close_scene),
+        cmocka_unit_test_teardown(test_missing_mask, close_scene),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -34,7 +34,7 @@ static void lost_pictures_are_learnt_anew(void **state)
 }
 
 /** A learning rate of 0 leaves a group unchanged and is no reason to stop. */
-static void what_does_not_learn_stays(void **state)
+static void test_zero_rate_changes_nothing(void **state)
 {
     adcgs_train_config config = small_config();
     int stopped;
@@ -113,7 +113,7 @@ static void contrast_is_of_what_is_known(void **state)
 /* ---- Ends ---- */
 
 /** A run can be finalised for the stream at any time, except before its first iteration and after it diverged. */
-static void a_run_ends_wherever_it_stands(void **state)
+static void test_run_ends_in_any_stage(void **state)
 {
     static const uint32_t stops[] = {60, 198};
     const adcgs_train_config config = small_config();
@@ -240,9 +240,12 @@ static void impossible_checkpoints_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lost_pictures_are_learnt_anew),          cmocka_unit_test(what_does_not_learn_stays),
-        cmocka_unit_test(points_that_no_camera_sees_are_refused), cmocka_unit_test(contrast_is_of_what_is_known),
-        cmocka_unit_test(a_run_ends_wherever_it_stands),          cmocka_unit_test(impossible_checkpoints_are_refused),
+        cmocka_unit_test(lost_pictures_are_learnt_anew),
+        cmocka_unit_test(test_zero_rate_changes_nothing),
+        cmocka_unit_test(points_that_no_camera_sees_are_refused),
+        cmocka_unit_test(contrast_is_of_what_is_known),
+        cmocka_unit_test(test_run_ends_in_any_stage),
+        cmocka_unit_test(impossible_checkpoints_are_refused),
     };
     return cmocka_run_group_tests_name("recovery", tests, open_scene, close_scene);
 }

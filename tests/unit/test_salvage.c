@@ -156,7 +156,7 @@ static void check_bit(const fixture *f, uint32_t type, int segment, uint32_t lef
 }
 
 /** Segments 0, 3 and 6 are keys; 8 in all. */
-static void test_what_is_lost(void **state)
+static void test_lost_segments(void **state)
 {
     const fixture *f = *state;
     check_bit(f, ADCGS_TYPE_INDX, 0, 8, 8);
@@ -286,8 +286,8 @@ static void test_useful_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_whole),        cmocka_unit_test(test_what_is_lost), cmocka_unit_test(test_pieces),
-        cmocka_unit_test(test_bytes),        cmocka_unit_test(test_nested),       cmocka_unit_test(test_decoder),
+        cmocka_unit_test(test_whole),        cmocka_unit_test(test_lost_segments), cmocka_unit_test(test_pieces),
+        cmocka_unit_test(test_bytes),        cmocka_unit_test(test_nested),        cmocka_unit_test(test_decoder),
         cmocka_unit_test(test_useful_bytes),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

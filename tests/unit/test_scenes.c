@@ -197,7 +197,7 @@ static void boxes_turn_as_often_as_they_say(void **state)
 }
 
 /* Before an object appears it casts no shadow either: without the object the image is the same, to the bit. */
-static void what_appears_was_not_there(void **state)
+static void test_appearing_object_is_absent_before(void **state)
 {
     static float before[FLOATS], without[FLOATS], after[FLOATS];
     const adcgs_scenes_entry *const scene = adcgs_scenes_entry_find("appear");
@@ -242,7 +242,7 @@ static void halves_come_apart(void **state)
 }
 
 /* A ball that is stretched along x and compressed along z at a quarter of its period, and back in shape at half. */
-static void what_is_soft_changes_its_shape(void **state)
+static void test_soft_object_changes_its_shape(void **state)
 {
     static float mask[3][LARGE * LARGE];
     int width[3] = {0, 0, 0}, height[3] = {0, 0, 0};
@@ -328,13 +328,13 @@ int main(void)
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(pictures_have_content),
         cmocka_unit_test(table_is_sound),
-        cmocka_unit_test(what_is_soft_changes_its_shape),
+        cmocka_unit_test(test_soft_object_changes_its_shape),
         cmocka_unit_test(wrong_counts_are_refused),
         cmocka_unit_test(covered_is_what_is_seen),
         cmocka_unit_test(half_of_the_samples_cover),
         cmocka_unit_test(crossings_are_as_long_as_they_say),
         cmocka_unit_test(boxes_turn_as_often_as_they_say),
-        cmocka_unit_test(what_appears_was_not_there),
+        cmocka_unit_test(test_appearing_object_is_absent_before),
         cmocka_unit_test(halves_come_apart),
         cmocka_unit_test(writing_fails_in_one_line),
     };

@@ -42,7 +42,7 @@ static double turned(const char *text, int camera, int number)
     return acos(fmin(0.5 * (trace - 1.0), 1.0)) * 57.29577951308232;
 }
 
-static void what_is_wrong_is_refused(void **state)
+static void test_wrong_faults_are_refused(void **state)
 {
     static const char *const bad[] = {"none=1",          "pose",     "pose=",   "pose=x",       "pose=-1", "pose=nan",
                                       "pose=101",        "axes=1.5", "axes=4",  "drop=1",       "pose=1,", ",",
@@ -176,7 +176,7 @@ static void times_are_others(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_wrong_is_refused),
+        cmocka_unit_test(test_wrong_faults_are_refused),
         cmocka_unit_test(no_fault_changes_nothing),
         cmocka_unit_test(cameras_are_turned_as_far_as_they_say),
         cmocka_unit_test(other_axes_are_others),

@@ -24,7 +24,7 @@ static void put_pictures(void)
         put_picture(&views[i], views[i].time);
 }
 
-static void what_is_still_is_the_wall(void **state)
+static void test_static_points_lie_on_the_wall(void **state)
 {
     const adcgs_stereo s = found;
     uint32_t off = 0;
@@ -40,7 +40,7 @@ static void what_is_still_is_the_wall(void **state)
     assert_true(off < s.n_still / 20);
 }
 
-static void what_moves_is_the_square(void **state)
+static void test_moving_points_lie_on_the_square(void **state)
 {
     const adcgs_stereo s = found;
     uint32_t off = 0, fast = 0, n = 0, astray = 0, seen = 0;
@@ -66,7 +66,7 @@ static void what_moves_is_the_square(void **state)
 }
 
 /** A place that a camera sees is known; a place that none sees is not. */
-static void what_is_known(void **state)
+static void test_known_places(void **state)
 {
     assert_true(adcgs_stereo_is_known(&found, (const double[]){0.1, 0, 1}));
     assert_true(adcgs_stereo_is_known(&found, (const double[]){0.1, 0, 3}));
@@ -74,7 +74,7 @@ static void what_is_known(void **state)
 }
 
 /** A point in front of a single camera is a floater. A point that many cameras would see, or that one knows to exist, is not. */
-static void what_floats(void **state)
+static void test_floaters(void **state)
 {
     uint32_t floats = 0;
     for (uint32_t i = 0; i < found.n_still; i++)
@@ -105,7 +105,7 @@ static double ending(const adcgs_stereo *s, int moment, double before, double be
 }
 
 /** An object that exists in two frames ends half a frame before and after them. A permanent object has no end. */
-static void what_comes_and_goes_has_ends(void **state)
+static void test_lifetimes_end(void **state)
 {
     (void)state;
     for (int i = 0; i < VIEWS; i++)
@@ -120,7 +120,7 @@ static void what_comes_and_goes_has_ends(void **state)
 }
 
 /** A stripe one pixel wide, which no matching window shows alone, is found at its own place and not in the wall behind it. */
-static void what_is_thin_is_found(void **state)
+static void test_thin_stripe_is_found(void **state)
 {
     const double pixel = SQUARE / FOCAL;
     uint32_t n = 0, off = 0;
@@ -189,7 +189,7 @@ static void threads_do_not_show(void **state)
     adcgs_pool_free(&pool);
 }
 
-static void where_it_applies(void **state)
+static void test_scenes_that_can_be_matched(void **state)
 {
     adcgs_scene other = scene;
     int applies;
@@ -217,15 +217,15 @@ static int forget_pictures(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_still_is_the_wall),
-        cmocka_unit_test(what_moves_is_the_square),
-        cmocka_unit_test(what_is_known),
-        cmocka_unit_test(what_floats),
+        cmocka_unit_test(test_static_points_lie_on_the_wall),
+        cmocka_unit_test(test_moving_points_lie_on_the_square),
+        cmocka_unit_test(test_known_places),
+        cmocka_unit_test(test_floaters),
         cmocka_unit_test(threads_do_not_show),
-        cmocka_unit_test(where_it_applies),
+        cmocka_unit_test(test_scenes_that_can_be_matched),
         cmocka_unit_test(poses_that_are_off_are_noticed),
-        cmocka_unit_test(what_comes_and_goes_has_ends),
-        cmocka_unit_test(what_is_thin_is_found),
+        cmocka_unit_test(test_lifetimes_end),
+        cmocka_unit_test(test_thin_stripe_is_found),
     };
     return cmocka_run_group_tests(tests, match_pictures, forget_pictures);
 }

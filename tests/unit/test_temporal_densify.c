@@ -71,7 +71,7 @@ static void lives_begin_at_their_moments(void **state)
 }
 
 /** The square is a rigid body: its anchors live as long as it does, and move with it. */
-static void what_keeps_its_form_is_a_body(void **state)
+static void test_rigid_square_is_a_body(void **state)
 {
     const adcgs_train_config config = small_config();
     adcgs_trainer *t = make(&config);
@@ -126,7 +126,7 @@ static void spans_need_what_moves(void **state)
  * An untrained model misses nearly everything. The result holds points of two frames, each better than the render, the worst
  * first, and repeats exactly.
  */
-static void what_is_missing_is_found(void **state)
+static void test_missing_points_are_found(void **state)
 {
     enum { MOST = 40 };
     const adcgs_train_config config = small_config();
@@ -251,14 +251,10 @@ static void one_moment_does_not_overflow(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_moment_does_not_overflow),
-        cmocka_unit_test(lives_begin_at_their_moments),
-        cmocka_unit_test(what_keeps_its_form_is_a_body),
-        cmocka_unit_test(spans_need_what_moves),
-        cmocka_unit_test(what_is_missing_is_found),
-        cmocka_unit_test(absence_is_no_idleness),
-        cmocka_unit_test(views_of_other_places_are_no_idleness),
-        cmocka_unit_test(runs_go_on_and_decode),
+        cmocka_unit_test(one_moment_does_not_overflow),          cmocka_unit_test(lives_begin_at_their_moments),
+        cmocka_unit_test(test_rigid_square_is_a_body),           cmocka_unit_test(spans_need_what_moves),
+        cmocka_unit_test(test_missing_points_are_found),         cmocka_unit_test(absence_is_no_idleness),
+        cmocka_unit_test(views_of_other_places_are_no_idleness), cmocka_unit_test(runs_go_on_and_decode),
     };
     return cmocka_run_group_tests(tests, put_scene, remove_scene);
 }
