@@ -100,7 +100,7 @@ adcgs_status adcgs_patch_image_init(adcgs_patch_image *o, const adcgs_stereo_vie
         for (int i = 0; i < n; i++) {
             const float *const p = view->pixels + 4 * (size_t)i;
             o->grey[i] = (p[0] + p[1] + p[2]) * (1.0f / 3);
-            known[i] = p[3] > 0.99f && !unstable[i];
+            known[i] = p[3] > ADCGS_STEREO_KNOWN && !unstable[i];
         }
         for (int y = RADIUS; y < h - RADIUS; y++)
             for (int x = RADIUS; x < w - RADIUS; x++)

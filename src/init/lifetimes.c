@@ -18,6 +18,7 @@ enum {
 };
 /* Share of the cameras that see the place and must show the background; 0.6 gains less on zju and cross80 (doc/log/bodies.md). */
 #define BACKGROUND_SHARE_MIN 0.8
+#define BACKGROUND_CAMERAS_MIN 2 /* least number of them; chosen by hand, not measured */
 
 typedef struct job {
     adcgs_stereo_point *points;
@@ -54,7 +55,7 @@ static int is_gone(const job *j, int frame, const double x[3])
         seen++;
         background += shows_background(camera, frame, (int)at[0], (int)at[1]);
     }
-    return background >= 2 && background >= BACKGROUND_SHARE_MIN * seen;
+    return background >= BACKGROUND_CAMERAS_MIN && background >= BACKGROUND_SHARE_MIN * seen;
 }
 
 /** Time from the point's frame to its end, in direction `step` (1 or -1); 0 if there is no end in range. */

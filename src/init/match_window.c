@@ -13,7 +13,7 @@ static float grey_at(const adcgs_stereo_view *v, double x, double y)
     const int iu = (int)u, iv = (int)w;
     const float a = (float)(u - iu), b = (float)(w - iv), *p = v->pixels + 4 * ((size_t)iv * (size_t)v->w + (size_t)iu);
     const float *const q = p + 4 * (size_t)v->w;
-    if (!(p[3] > 0.99f && p[7] > 0.99f && q[3] > 0.99f && q[7] > 0.99f))
+    if (!(p[3] > ADCGS_STEREO_KNOWN && p[7] > ADCGS_STEREO_KNOWN && q[3] > ADCGS_STEREO_KNOWN && q[7] > ADCGS_STEREO_KNOWN))
         return NAN;
     return ((1 - b) * ((1 - a) * (p[0] + p[1] + p[2]) + a * (p[4] + p[5] + p[6])) +
             b * ((1 - a) * (q[0] + q[1] + q[2]) + a * (q[4] + q[5] + q[6]))) *

@@ -22,6 +22,7 @@ enum {
 enum { STILL_THERE = 100 }; /* cost where the view shows moving content and the neighbour shows background */
 /* Maximum number of moving pixels in the window of a thin object; measured on rods and four scenes (doc/log/matching.md). */
 enum { THIN = 12 };
+#define SEEN_BY 2        /* neighbours; one alone is weak evidence if there are more */
 #define COLOUR_OFF 0.15f /* colour difference of maximum cost, values of 0 to 1 */
 /* Cost per unit of colour difference, summed over a window; arithmetic. */
 #define COLOUR_SCALE (COLOUR_MOST / (3 * WINDOW * COLOUR_OFF))
@@ -176,7 +177,8 @@ static void fetch(const field *f, const adcgs_stereo_view *source, const passage
         }
         for (int x = 0; y >= RADIUS && y < f->h - RADIUS && x < f->s->w; x++) {
             const int at = (y - RADIUS) * f->s->w + x;
-            f->seen[at] = f->inside[x + RADIUS] && other[4 * (x + RADIUS) + 3] > 0.99f && own[4 * (x + RADIUS) + 3] > 0.99f;
+            f->seen[at] = f->inside[x + RADIUS] && other[4 * (x + RADIUS) + 3] > ADCGS_STEREO_KNOWN &&
+                          own[4 * (x + RADIUS) + 3] > ADCGS_STEREO_KNOWN;
             f->against[at] = f->mask[row + (size_t)x + RADIUS] > 0 && f->still[x + RADIUS];
         }
     }
@@ -232,7 +234,7 @@ static int16_t better_half(const int16_t *cost, size_t stride, int n)
             best[k] = best[k - 1];
         best[k] = c;
     }
-    if (seen < 2 && n >= 2) /* one neighbour alone is weak evidence */
+    if (seen < SEEN_BY && n >= SEEN_BY)
         return (int16_t)(seen ? (best[0] + ADCGS_SWEEP_COST) / 2 : ADCGS_SWEEP_COST);
     const int half = (seen + 1) / 2;
     for (int i = 0; i < half; i++)

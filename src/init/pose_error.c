@@ -24,6 +24,7 @@ enum { NEIGHBOURS = 2 }; /* per camera */
 #define APART 0.02       /* scene units: minimum distance between them */
 #define ALIKE 0.9        /* minimum correlation of a match */
 #define SHARP 0.05       /* minimum decrease of the correlation one pixel aside; an edge along the line would match anywhere */
+#define LINE_LEAST 2     /* pixels: minimum length of an epipolar line, whose direction is unclear below */
 
 typedef struct pair {
     const adcgs_stereo_view *from, *to;
@@ -52,7 +53,7 @@ static double off_line(const pair *p, const float own[WINDOW], int px, int py)
         !adcgs_window_pass(p->from, p->to, px, py, p->nearest, ends[1], right, down))
         return (double)NAN;
     const double way[2] = {ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]}, length = hypot(way[0], way[1]);
-    if (!(length >= 2))
+    if (!(length >= LINE_LEAST))
         return (double)NAN;
     const double side[2] = {-way[1] / length, way[0] / length};
     const int steps = ADCGS_MIN((int)ceil(length), STEPS_MOST);

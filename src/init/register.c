@@ -11,9 +11,11 @@
 #define MATCH_REACH 2.0 /* pixels: maximum distance of a match in space */
 #define MATCH_OFF 3.0   /* pixels: the same including the colour term */
 #define FACING 0.15     /* cosine: minimum between normal and viewing ray; below it, a surface is seen at a grazing angle */
-#define GAIN_LEAST 0.4  /* minimum lighting gain */
-#define GAIN_MOST 2.5   /* maximum lighting gain */
-#define GAIN_KNOWN 0.2  /* prior of the gains: sum of squares of a channel at which a side's own data has half the weight */
+/* Sum of the matches' weights, below which a pose is undetermined: three points fix one, geometry. */
+#define WEIGHT_LEAST 3
+#define GAIN_LEAST 0.4 /* minimum lighting gain */
+#define GAIN_MOST 2.5  /* maximum lighting gain */
+#define GAIN_KNOWN 0.2 /* prior of the gains: sum of squares of a channel at which a side's own data has half the weight */
 
 int adcgs_body_side(const float normal[3])
 {
@@ -133,7 +135,7 @@ void adcgs_body_register(const adcgs_body_model *m, const adcgs_cloud *cloud, co
                 gains.own[m->more[i].side][a] += weight * (double)(m->p[i].rgb[a] * m->p[i].rgb[a]);
             }
         }
-        if (!(sums.weight > 3))
+        if (!(sums.weight > WEIGHT_LEAST))
             return;
         adcgs_rigid_fit(&sums, &place->at);
         adcgs_gains_set(place->gain, &gains);

@@ -14,6 +14,8 @@
 #include <stdlib.h>
 
 enum { ADCGS_STEREO_CAMERAS = 24 }; /* maximum number of matched cameras; chosen by hand, not measured */
+/** From this value of the fourth channel on, a pixel counts as known; below 1 for rounding; chosen by hand, not measured. */
+#define ADCGS_STEREO_KNOWN 0.99f
 
 /** A camera and its image. */
 typedef struct adcgs_stereo_view {

@@ -17,6 +17,7 @@ enum {
 #define EDGE 20.0f  /* per unit of contrast: depth edges often coincide with image edges */
 #define ALIKE 0.45f /* maximum cost of a strong match, relative to the full cost */
 #define CLEAR 0.03f /* minimum lead of the best plane over the next best */
+#define RIVAL 2     /* planes: minimum distance of the next best from the best, exclusive */
 
 /**
  * Padding before and after the planes of a path, so that no plane is a special case: places, and a cost above all; arithmetic.
@@ -133,7 +134,7 @@ static void decide(adcgs_depths *o, const adcgs_sweep *s, const int16_t *cost, c
     for (int d = 1; d < s->planes; d++)
         best = sum[d] < sum[best] ? d : best;
     for (int d = 0; d < s->planes; d++)
-        next = abs(d - best) > 2 && sum[d] < next ? sum[d] : next;
+        next = abs(d - best) > RIVAL && sum[d] < next ? sum[d] : next;
     const int inner = best > 0 && best + 1 < s->planes;
     const double off = inner ? lowest(sum[best - 1], sum[best], sum[best + 1]) : 0;
     const float lead = (float)(next - sum[best]) / (2 * PATHS * ADCGS_SWEEP_COST);

@@ -26,8 +26,9 @@ enum {
     LINE = 3  /* the same if the centre itself differs */
 };
 /* Chosen by hand, not measured. */
-#define AXES_ALIKE 0.6 /* cosine: minimum alignment of the axes of matched views */
-#define APART 0.005    /* scene units: minimum distance between views, for depth */
+#define AXES_ALIKE 0.6  /* cosine: minimum alignment of the axes of matched views */
+#define APART 0.005     /* scene units: minimum distance between views, for depth */
+#define CAMERAS_AGREE 2 /* cameras that must show a static surface at a place */
 
 struct adcgs_stereo_maps {
     int n;
@@ -220,7 +221,7 @@ static adcgs_stereo_in_place in_place(const adcgs_stereo_maps *maps, const doubl
 {
     double there[3], at[2] = {0, 0}, depth;
     int same = 0, still = 0;
-    for (int k = 0; k < maps->n && still < 2; k++) {
+    for (int k = 0; k < maps->n && still < CAMERAS_AGREE; k++) {
         const adcgs_stereo_view *v = &maps->view[k];
         if (adcgs_depths_judge(&maps->depths[k], x, there) != ADCGS_VERDICT_SAME)
             continue;
@@ -228,7 +229,7 @@ static adcgs_stereo_in_place in_place(const adcgs_stereo_maps *maps, const doubl
         same++;
         still += !maps->unstable[k][(int)at[1] * v->w + (int)at[0]];
     }
-    return still >= 2 ? ADCGS_PLACE_STILL : same >= 2 ? ADCGS_PLACE_COMMON : ADCGS_PLACE_OWN;
+    return still >= CAMERAS_AGREE ? ADCGS_PLACE_STILL : same >= CAMERAS_AGREE ? ADCGS_PLACE_COMMON : ADCGS_PLACE_OWN;
 }
 
 /** True if no view has a source for matching. */

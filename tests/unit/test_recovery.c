@@ -89,7 +89,7 @@ static void points_that_no_camera_sees_are_refused(void **state)
 }
 
 /** Unknown pixels do not count in the contrast, and so not in lambda. */
-static void contrast_is_of_what_is_known(void **state)
+static void test_contrast_of_known_pixels(void **state)
 {
     const adcgs_train_config config = small_config();
     adcgs_trainer *t = make_trainer(&config, pool);
@@ -243,7 +243,7 @@ int main(void)
         cmocka_unit_test(lost_pictures_are_learnt_anew),
         cmocka_unit_test(test_zero_rate_changes_nothing),
         cmocka_unit_test(points_that_no_camera_sees_are_refused),
-        cmocka_unit_test(contrast_is_of_what_is_known),
+        cmocka_unit_test(test_contrast_of_known_pixels),
         cmocka_unit_test(test_run_ends_in_any_stage),
         cmocka_unit_test(impossible_checkpoints_are_refused),
     };

@@ -29,6 +29,7 @@ enum {
 #define SHARE_LEAST 0.4   /* minimum share of a body's points that match, averaged over frames */
 #define MOVES_LEAST 2.0   /* pixels: minimum motion of a body */
 #define LIGHT_BETTER 0.08 /* minimum gain of image agreement over the body held at one pose */
+#define JUDGED 500        /* points that are compared with the images, approximately */
 
 /*
  * Share of a shadow's points that lie on a static surface; calibrated on demo: 0.98 to 1, rotating objects 0.52 to 0.86
@@ -163,7 +164,7 @@ static int is_shadow(const work *w, int first, double far)
 static int beats_still(const work *w, int rest)
 {
     const adcgs_track *t = &w->t;
-    const uint32_t stride = t->model.n / 500 + 1;
+    const uint32_t stride = t->model.n / JUDGED + 1;
     double better = 0;
     int away = 0;
     for (int m = 0; m < w->l.n; m++) {

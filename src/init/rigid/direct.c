@@ -19,6 +19,7 @@ enum {
 #define SLOPE_MOST 3.0  /* maximum slope of colours: ratio */
 #define STEP_LEAST 0.01 /* pixels: step length at which iteration stops */
 #define STEP_MOST 1.5   /* pixels: maximum step of the body's points, approximately */
+#define LIGHT_ROUNDS 4  /* rounds of fitting any lighting */
 
 int adcgs_sample_image(const adcgs_stereo_camera *c, int frame, const double at[2], adcgs_sample *s)
 {
@@ -256,7 +257,7 @@ double adcgs_direct_any_light(const adcgs_body_model *m, const adcgs_frame_views
     memset(lines, 0, sizeof lines);
     for (int i = 0; i < 3 * ADCGS_BODY_SIDES; i++)
         lines[i / 3][i % 3].slope = 1;
-    for (int round = 0; round < 4; round++) {
+    for (int round = 0; round < LIGHT_ROUNDS; round++) {
         double n = 0;
         light = 0;
         for (uint32_t i = 0; i < m->n; i += stride) {

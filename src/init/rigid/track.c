@@ -20,6 +20,8 @@ enum {
 #define SHARE_SURE 0.35 /* share of matching points from which no other initial pose is tried */
 #define LIGHT_SURE 0.52 /* agreement from which no other initial pose is tried */
 #define ABOUT 0.97      /* relative score that counts as equally good */
+#define MEASURED 64     /* points by which two poses are compared, approximately */
+#define AHEAD_MOST 4    /* steps by which motion is continued at most */
 #define APART 3.0       /* pixels: minimum distance between the positions about which rotations are tried */
 #define TURN_STEP 0.26  /* radians between rotations */
 enum { TURNS = 4, STARTS = 3 + 2 * 13 * 2 * TURNS }; /* steps to each side; 2 positions x 13 axes, geometry */
@@ -77,7 +79,7 @@ typedef struct search {
 double adcgs_track_between(const adcgs_track *t, const adcgs_rigid *a, const adcgs_rigid *b)
 {
     double sum = 0;
-    const uint32_t stride = stride_for(&t->model, 64);
+    const uint32_t stride = stride_for(&t->model, MEASURED);
     uint32_t n = 0;
     for (uint32_t i = 0; i < t->model.n; i += stride, n++) {
         double x[3], y[3];
@@ -203,7 +205,7 @@ void adcgs_track_extrapolate(const adcgs_track *t, const adcgs_layers *l, int fr
 {
     const float *when = l->rig->frame_time;
     const double span = (double)(when[known[0]] - when[known[1]]), more = (double)(when[frame] - when[known[0]]);
-    const int times = (int)fmin(fmax(round(more / span), -4), 4);
+    const int times = (int)fmin(fmax(round(more / span), -AHEAD_MOST), AHEAD_MOST);
     adcgs_rigid step;
     adcgs_rigid_inverse(&t->place[known[1]].at, &step);
     adcgs_rigid_then(&step, &t->place[known[0]].at, &step);

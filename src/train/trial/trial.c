@@ -22,6 +22,7 @@ enum {
     ITERATIONS_MOST = 600,  /* maximum iterations of a trial */
     DENSIFICATIONS = 20     /* densification intervals per trial */
 };
+#define VIEWS_PER_FRAME 3 /* for densification from residuals, which needs as many views of a frame */
 /* Approximate pixels of a trial's images; enough to see a motion of 1/100 of the image; chosen by hand, not measured. */
 static const double PIXELS = 12000;
 static const double
@@ -69,7 +70,7 @@ static int applies(const adcgs_trainer *t, int mechanism)
     case ADCGS_RETIMING:
         return has_retimed(t);
     case ADCGS_RESIDUALS:
-        return t->scene->points.n >= ADCGS_POINTS_LEAST && t->n_views >= 3 * t->scene->n_times;
+        return t->scene->points.n >= ADCGS_POINTS_LEAST && t->n_views >= VIEWS_PER_FRAME * t->scene->n_times;
     case ADCGS_FLOATERS:
         return t->stereo.maps != NULL;
     case ADCGS_STATIC_ANCHORS:
