@@ -38,9 +38,12 @@ static double distance_to_centre(const adcgs_info *info, const adcgs_camera *cam
 adcgs_status adcgs_filmed_view_init(adcgs_filmed_view *view, const adcgs_info *info, const adcgs_filmed_camera *cameras,
                                     const adcgs_camera *home, adcgs_error *error)
 {
+    double up[3];
+    const int has_up = adcgs_find_up(info, up);
     *view = (adcgs_filmed_view){.following = 0};
     ADCGS_TRY(adcgs_follow_init(&view->follow, cameras, info->cameras, 0, error));
-    return adcgs_view_limit_init(&view->limit, cameras, info->cameras, &view->follow, distance_to_centre(info, home), error);
+    return adcgs_view_limit_init(&view->limit, cameras, info->cameras, &view->follow, has_up ? up : NULL,
+                                 distance_to_centre(info, home), error);
 }
 
 void adcgs_filmed_view_clear(adcgs_filmed_view *view)

@@ -304,7 +304,7 @@ static void test_region(void **state)
 {
     const adcgs_filmed_camera one = {camera_at(0), (double)NAN, -1};
     adcgs_view_limit limit;
-    assert_int_equal(adcgs_view_limit_init(&limit, &one, 1, NULL, sqrt(37.0), NULL), ADCGS_OK);
+    assert_int_equal(adcgs_view_limit_init(&limit, &one, 1, NULL, NULL, sqrt(37.0), NULL), ADCGS_OK);
     assert_true(adcgs_view_limit_at(&limit, one.camera.cam_to_world) < 1e-6);
     assert_true(adcgs_view_limit_at(&limit, camera_at(20 * TURN / 360).cam_to_world) < 1);
     assert_true(adcgs_view_limit_at(&limit, camera_at(30 * TURN / 360).cam_to_world) > 1);
@@ -313,9 +313,49 @@ static void test_region(void **state)
     far.cam_to_world[3] += 3;
     assert_true(adcgs_view_limit_at(&limit, near.cam_to_world) < 1 && adcgs_view_limit_at(&limit, far.cam_to_world) > 1);
     adcgs_view_limit_clear(&limit);
-    assert_int_equal(adcgs_view_limit_init(&limit, NULL, 0, NULL, 6.0, NULL), ADCGS_OK);
+    assert_int_equal(adcgs_view_limit_init(&limit, NULL, 0, NULL, NULL, 6.0, NULL), ADCGS_OK);
     assert_true(adcgs_view_limit_at(&limit, far.cam_to_world) == 0.0); /* without cameras there is no limit */
     adcgs_view_limit_clear(&limit);
+}
+
+/** Cameras far apart on a circle, all at one height: as free sideways as before, but not up, down, nor away from the centre. */
+static void test_region_has_axes(void **state)
+{
+    static const double up[3] = {0, 0, 1};
+    adcgs_filmed_camera ring[6];
+    adcgs_view_limit limit;
+    for (int i = 0; i < 6; i++)
+        ring[i] = (adcgs_filmed_camera){camera_at(TURN * i / 6), (double)NAN, -1};
+    assert_int_equal(adcgs_view_limit_init(&limit, ring, 6, NULL, up, sqrt(37.0), NULL), ADCGS_OK);
+    adcgs_camera aside = ring[0].camera, high = aside, low = aside, far = aside;
+    aside.cam_to_world[7] += 3;
+    high.cam_to_world[11] += 3;
+    low.cam_to_world[11] -= 1.2;
+    far.cam_to_world[3] += 3;
+    assert_true(adcgs_view_limit_at(&limit, aside.cam_to_world) < 1 && adcgs_view_limit_at(&limit, low.cam_to_world) > 2);
+    assert_true(adcgs_view_limit_at(&limit, high.cam_to_world) > 1 && adcgs_view_limit_at(&limit, far.cam_to_world) > 1);
+    adcgs_view_limit_clear(&limit);
+    assert_int_equal(adcgs_view_limit_init(&limit, ring, 6, NULL, NULL, sqrt(37.0), NULL), ADCGS_OK);
+    assert_true(adcgs_view_limit_at(&limit, low.cam_to_world) < 1); /* without up nothing is below */
+    adcgs_view_limit_clear(&limit);
+}
+
+/** The longest drags end above the cameras, and at the level of the centre, which no camera saw from below. */
+static void test_drags_up_and_down(void **state)
+{
+    double ends[2];
+    film f;
+    for (int way = 0; way < 2; way++) {
+        open_film(&f);
+        for (int i = 0; i < 300; i++) {
+            drag(&f, 0, way ? 30 : -30);
+            f.play.now += 1;
+        }
+        ends[way] = asin(f.play.control.camera.cam_to_world[11] / sqrt(37.0)) * 360 / TURN;
+        adcgs_filmed_view_clear(&f.filmed);
+    }
+    const double highest = fmax(ends[0], ends[1]);
+    assert_true(fabs(fmin(ends[0], ends[1])) < 2 && highest > 40 && highest < 60); /* degrees */
 }
 
 /** A double click asks for the pivot there; an answer to an older request is ignored. */
@@ -352,6 +392,8 @@ int main(void)
         cmocka_unit_test(test_view_resists),
         cmocka_unit_test(test_view_returns),
         cmocka_unit_test(test_region),
+        cmocka_unit_test(test_region_has_axes),
+        cmocka_unit_test(test_drags_up_and_down),
         cmocka_unit_test(test_pivot_request),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
