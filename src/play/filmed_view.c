@@ -10,6 +10,7 @@
 #include <math.h>
 
 #define RETURN_SECONDS 0.3 /* in which a view outside goes most of its way back, while it plays */
+#define LOOP_SECONDS 0.8   /* of the scene, from the path's end to its start; at most half of the scene */
 #define PART_STEPS 12      /* halvings: 1/4096 of an offset is invisible */
 
 /** out = a b, poses of 3x4 numbers; out must be neither a nor b. */
@@ -65,23 +66,44 @@ void adcgs_filmed_view_start(adcgs_filmed_view *view, adcgs_orbit_control *contr
     memcpy(view->base, camera.cam_to_world, sizeof view->base);
     adcgs_filmed_view_moved(view, control);
     view->following = 1;
-    view->beside = 0;
+    view->beside = view->returning = 0;
 }
 
-/** The pose of a part of the offset: of its turn about the centre of the orbit, and of the rest of the way. */
-static void place_beside(const adcgs_filmed_view *view, double part, double pose[12])
+/** The pose of a part of an offset from a base: of its turn about the target in the base's axes, and of the rest of the way. */
+static void place_part(const double base[12], const double offset[12], const double target[3], double part, double pose[12])
 {
     double none[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, from[4], to[4], turn[3], whole[3], turned[3];
     adcgs_rotation_from_pose(none, from);
-    adcgs_rotation_from_pose(view->offset, to);
+    adcgs_rotation_from_pose(offset, to);
     adcgs_rotation_between(from, to, turn);
     adcgs_rotation_exp(turn, part, to);
     adcgs_rotation_to_pose(to, none);
-    transform(view->offset, view->target, whole);
-    transform(none, view->target, turned);
+    transform(offset, target, whole);
+    transform(none, target, turned);
     for (int i = 0; i < 3; i++)
-        none[4 * i + 3] = view->target[i] - turned[i] + part * (whole[i] - view->target[i]);
-    multiply(view->base, none, pose);
+        none[4 * i + 3] = target[i] - turned[i] + part * (whole[i] - target[i]);
+    multiply(base, none, pose);
+}
+
+static void place_beside(const adcgs_filmed_view *view, double part, double pose[12])
+{
+    place_part(view->base, view->offset, view->target, part, pose);
+}
+
+/** Moves the base from the path's end, where it was at the turn of a loop, to the path's camera. */
+static void return_to_start(adcgs_filmed_view *view, const adcgs_play_clock *clock)
+{
+    const double seconds = fmin(LOOP_SECONDS, 0.5 * clock->frames / clock->rate);
+    const double part = (adcgs_play_clock_time(clock) - clock->begin) / seconds;
+    double offset[12], pose[12];
+    view->returning = view->returning && clock->turns > 0 && part < 1;
+    if (!view->returning)
+        return;
+    memcpy(pose, view->base, sizeof pose);
+    adcgs_pose_invert(pose);
+    multiply(pose, view->end, offset);
+    place_part(view->base, offset, view->target, 1 - part * part * (3 - 2 * part), pose);
+    memcpy(view->base, pose, sizeof view->base);
 }
 
 /** The largest part of the offset that is inside of the filmed region. */
@@ -102,15 +124,22 @@ static double part_inside(const adcgs_filmed_view *view)
     return low;
 }
 
-void adcgs_filmed_view_tick(adcgs_filmed_view *view, adcgs_orbit_control *control, double time, double seconds)
+void adcgs_filmed_view_tick(adcgs_filmed_view *view, adcgs_orbit_control *control, const adcgs_play_clock *clock, double seconds)
 {
     adcgs_camera camera;
+    if (clock->turns > view->turns) {
+        memcpy(view->end, view->base, sizeof view->end);
+        view->returning = 1;
+    }
+    view->turns = clock->turns;
     if (!view->following)
         return;
-    adcgs_follow_at(&view->follow, time, &camera);
+    adcgs_follow_at(&view->follow, adcgs_play_clock_time(clock), &camera);
     memcpy(view->base, camera.cam_to_world, sizeof view->base);
-    if (view->beside && seconds > 0)
+    return_to_start(view, clock);
+    if (view->beside && seconds > 0 && !view->returning)
         view->part += (part_inside(view) - view->part) * (1 - exp(-seconds / RETURN_SECONDS));
+    memcpy(camera.cam_to_world, view->base, sizeof view->base);
     if (view->beside)
         place_beside(view, view->part, camera.cam_to_world);
     control->camera = camera;
@@ -135,7 +164,7 @@ static double limit_at(const adcgs_filmed_view *view, const adcgs_orbit_control 
 
 double adcgs_filmed_view_outside(const adcgs_filmed_view *view, const adcgs_orbit_control *control)
 {
-    return view->unlimited ? 0 : fmax(0, fmin(limit_at(view, control) - 1, 1));
+    return view->unlimited || view->returning ? 0 : fmax(0, fmin(limit_at(view, control) - 1, 1));
 }
 
 double adcgs_filmed_view_share(const adcgs_filmed_view *view, const adcgs_orbit_control *before, const adcgs_orbit_control *after)

@@ -9,6 +9,7 @@
 #include "camera/follow.h"
 #include "camera/orbit_control.h"
 #include "camera/view_limit.h"
+#include "play/play_clock.h"
 
 typedef struct adcgs_filmed_view {
     adcgs_follow follow; /**< the first path of the stream */
@@ -20,6 +21,9 @@ typedef struct adcgs_filmed_view {
     double offset[12]; /**< pose of the view in the axes of that camera, as the user placed it */
     double part;       /**< of that offset which is in use, 0 to 1: less while the whole would lead outside */
     double target[3];  /**< centre of the orbit in these axes */
+    int turns;         /**< of the clock, at the last tick */
+    int returning;     /**< nonzero: in a loop, the view is on its way from the path's end to its start */
+    double end[12];    /**< where it began that way */
 } adcgs_filmed_view;
 
 /** cameras: [info->cameras]. home: the first view. ADCGS_ERR_MEMORY is the only failure. */
@@ -34,8 +38,9 @@ void adcgs_filmed_view_start(adcgs_filmed_view *view, adcgs_orbit_control *contr
 /**
  * Moves the view with the path's camera. Call it when the time has changed. seconds: since the last call, if the user lets the
  * scene play, else 0. Then a view next to the path returns to the filmed region, and to its place when that is inside again.
+ * After a turn of the clock's loop the view moves from the path's end to its start within a second, while the scene plays.
  */
-void adcgs_filmed_view_tick(adcgs_filmed_view *view, adcgs_orbit_control *control, double time, double seconds);
+void adcgs_filmed_view_tick(adcgs_filmed_view *view, adcgs_orbit_control *control, const adcgs_play_clock *clock, double seconds);
 /** The user moved the view, or set another centre: it keeps its place relative to the path's camera from now on. */
 void adcgs_filmed_view_moved(adcgs_filmed_view *view, const adcgs_orbit_control *control);
 /** How far the view is outside of the filmed region: 0 inside, 1 where it may go no further. */

@@ -25,6 +25,7 @@ void adcgs_play_clock_init(adcgs_play_clock *clock, double begin, double end, do
 static void go_to(adcgs_play_clock *clock, int frame)
 {
     clock->position = frame / clock->rate;
+    clock->turns = 0;
 }
 
 void adcgs_play_clock_span(adcgs_play_clock *clock, double begin, double end)
@@ -46,9 +47,10 @@ void adcgs_play_clock_tick(adcgs_play_clock *clock, double now)
     if (clock->position < length(clock))
         return;
     clock->playing = clock->loop;
-    if (clock->loop)
+    if (clock->loop) {
         clock->position = fmod(clock->position, length(clock));
-    else
+        clock->turns++;
+    } else
         go_to(clock, clock->frames - 1);
 }
 

@@ -17,6 +17,7 @@ typedef struct adcgs_play_clock {
     double available; /**< seconds since begin that are available; playback waits there. Infinity: the whole stream */
     int speed;        /**< power of two */
     int playing, loop;
+    int turns; /**< how often playback came back from the end since the user chose a frame */
 } adcgs_play_clock;
 
 /** Sets the frames from begin to end, both included, at most 10^9. Starts paused, at the first frame. */

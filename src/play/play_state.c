@@ -280,7 +280,7 @@ void adcgs_play_tick(adcgs_play_state *state, double now)
             by[2] += way * flights[i].forward;
         }
     if (state->filmed)
-        adcgs_filmed_view_tick(state->filmed, &state->control, adcgs_play_clock_time(&state->clock), seconds);
+        adcgs_filmed_view_tick(state->filmed, &state->control, &state->clock, seconds);
     if (state->held)
         adcgs_play_move(state, adcgs_hand_fly, by[0], by[1], by[2]);
 }

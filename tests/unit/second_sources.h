@@ -4,6 +4,7 @@
 #define ADCGS_TESTS_SECOND_SOURCES_H
 
 int adcgs_test_cli_json(void);
+int adcgs_test_filmed_views(void);
 int adcgs_test_glb_faults(void);
 int adcgs_test_hypernerf_real(void);
 int adcgs_test_lens_images(void);
