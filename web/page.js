@@ -22,7 +22,7 @@ const page = window.adcgs = {
     get generation() { return generation; }, // of the scene's state; that of the last image is in page.picture
     get gpu() { return gpu; },
     get gpuKind() { return gpu ? gpu.kind : 'none'; }, // webgpu, webgl2, none
-    gpuChosen: null,      // a promise: after it, no other kind takes its place unless one is lost
+    gpuChosen: null,      // a promise: after it, no other kind takes its place unless one is lost or slow
     get sound() { return sound; },
     get headset() { return headset; },
     offerHeadset: () => offerHeadset(),
@@ -151,7 +151,7 @@ function step() {
     styleLimits(view.call, [$('exact'), $('fast')]);
     explainEdge(view.call.view_outside());
     const moving = view.call.view_moving() && !saves;
-    if (gpu && gpu.lost)
+    if (gpu && (gpu.lost || gpu.slow))
         chooseGpu();
     if (moving && gpu)
         drawFast();
@@ -178,8 +178,17 @@ function renewWebgl() {
     }
 }
 
+/** WebGPU that is slower than WebGL2 may be is given up. */
+function dropSlow() {
+    webgpu.device.destroy();
+    webgpu = null;
+    note('WebGPU was slow');
+}
+
 /** WebGPU, else WebGL2, else none. A headset needs WebGL2. */
 function chooseGpu() {
+    if (gpu && gpu.slow && webgl && !webgl.lost)
+        dropSlow();
     const last = gpu, lost = last && last.lost ? `${last.kind === 'webgpu' ? 'WebGPU' : 'WebGL2'} was lost` : '';
     if (webgpu && webgpu.lost && !headset)
         renewWebgl();

@@ -5,6 +5,15 @@
 
 const SORT_BLOCK = 4096;        // splats that a workgroup sorts
 const SHIFT_STRIDE = 256;       // bytes between two shifts, whose place is an offset of a uniform
+const FIRST_IMAGES = 3;         // which show how fast the adapter is
+const FIRST_MS = 1000;          // for these, at most; a graphics processor takes some 50
+const SOFTWARE = /swiftshader|llvmpipe|lavapipe|software|basic render/i;
+
+/** Whether a program stands in for the graphics processor. Browsers say so, or the adapter has such a program's name. */
+function isSoftware(adapter) {
+    const { isFallbackAdapter = adapter.isFallbackAdapter, vendor, architecture, device, description } = adapter.info || {};
+    return Boolean(isFallbackAdapter) || SOFTWARE.test([vendor, architecture, device, description].join(' '));
+}
 
 const VIEW = `
 struct View {
@@ -161,17 +170,16 @@ fn paint(in: Corner) -> @location(0) vec4f {
 }`;
 
 class WebGpu {
-    /** Rejects if the browser gives no adapter, or one in software unless any will do. */
+    /** Rejects if the browser gives no adapter, or one in software unless any will do, however slow it is. */
     static async open(canvas, any) {
         const adapter = navigator.gpu ? await navigator.gpu.requestAdapter() : null;
-        const { isFallbackAdapter: slow } = adapter ? adapter.info || adapter : {};
-        if (!adapter || (slow && !any))
+        if (!adapter || (!any && isSoftware(adapter)))
             throw new Error('no WebGPU');
         const { maxStorageBufferBindingSize, maxBufferSize } = adapter.limits;
         const device = await adapter.requestDevice({ requiredLimits: { maxStorageBufferBindingSize, maxBufferSize } });
         const most = Math.min(maxStorageBufferBindingSize, maxBufferSize) >>> 6;
         const gpu = Object.assign(new WebGpu(), { kind: 'webgpu', sorts: true, canvas, device, most, n: 0, room: 0, sorted: 0,
-                                                  lost: false, took: 0, working: false });
+                                                  lost: false, took: 0, working: false, any, images: 0, spent: 0, since: 0 });
         gpu.lose = () => { gpu.lost = true; };
         device.lost.then(gpu.lose);
         device.addEventListener('uncapturederror', gpu.lose); // memory, above all
@@ -275,11 +283,19 @@ class WebGpu {
         pass.end();
         device.queue.submit([encoder.finish()]);
         this.working = true;
-        const since = performance.now();
+        this.since = performance.now();
         device.queue.onSubmittedWorkDone().then(() => {
             this.working = false;
-            this.took = performance.now() - since;
+            this.took = performance.now() - this.since;
+            if (this.images++ < FIRST_IMAGES)
+                this.spent += this.took;
         }, this.lose);
+    }
+
+    /** Whether the first images took too long, or the one at work does. */
+    get slow() {
+        const now = this.working && this.images < FIRST_IMAGES ? performance.now() - this.since : 0;
+        return !this.any && this.spent + now > FIRST_MS;
     }
 
     /** Whether the last image is still being rendered. A caller that waits for it never floods a slow GPU. Sets took, in ms. */

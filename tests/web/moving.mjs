@@ -165,13 +165,35 @@ async function lost() {
     check(/WebGPU was lost,WebGL2 was lost: .*rendered exactly/.test(got.notes), `notes after the losses: ${got.notes}`);
 }
 
+/** Where WebGPU does not finish its first images in time, WebGL2 renders, unless the address wants WebGPU. */
+async function slow() {
+    if (!webgpu || !await goWith('webgpu'))
+        return;
+    const got = await run(`const { gpu } = adcgs, start = performance.now();
+        gpu.device.queue.onSubmittedWorkDone = () => new Promise(() => null);
+        pointer('pointerdown', 100, 80);
+        let n = 0;
+        const move = () => pointer('pointermove', 100 + n++ % 20, 80);
+        await until(() => { move(); return performance.now() - start > 1500 && gpu.working; }, 'image at work');
+        const patient = adcgs.gpuKind;
+        gpu.any = false;
+        await until(() => { move(); return adcgs.gpuKind !== 'webgpu'; }, 'other GPU after WebGPU');
+        pointer('pointerup', 100, 80);
+        return { patient, kind: adcgs.gpuKind, notes: adcgs.notes.join() };`);
+    same(got, { patient: 'webgpu', kind: 'webgl2', notes: 'WebGPU was slow' }, 'the GPU in use after slow images');
+}
+
 /** By default no GPU in software replaces WebGL2. Without both the decoder renders, and a note says so. */
 async function choices() {
     await go(urlOf('share.html'));
     const usual = await run(`await settled();
         await adcgs.gpuChosen;
         const adapter = await navigator.gpu?.requestAdapter();
-        return { slow: !adapter || adapter.info.isFallbackAdapter, kind: adcgs.gpuKind, webgl: ${WEBGL} };`);
+        const infos = [{ architecture: 'swiftshader' }, { description: 'llvmpipe (LLVM 15)' }, { description: 'Microsoft Basic Render Driver' },
+                       { isFallbackAdapter: true }, { vendor: 'intel', architecture: 'gen-12lp', isFallbackAdapter: false }, null];
+        return { slow: !adapter || adapter.info.isFallbackAdapter, kind: adcgs.gpuKind, webgl: ${WEBGL},
+                 software: infos.map(info => isSoftware({ info })) };`);
+    same(usual.software, [true, true, true, true, false, false], 'adapters in software');
     same(usual.kind, usual.slow ? usual.webgl : 'webgpu', 'the GPU in use by default');
     await go(urlOf('share.html', full ? '&draw=exact' : '&gpu=none'));
     const got = await run(`await settled(); const n = adcgs.pictures;
@@ -187,4 +209,4 @@ async function choices() {
     check(got.notes.some(note => /rendered exactly/.test(note)), 'it does not say that no GPU renders');
 }
 
-await runParts([images, turns, order, lost, choices], 240, 180, { flags });
+await runParts([images, turns, order, lost, slow, choices], 240, 180, { flags });
