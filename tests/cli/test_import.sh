@@ -92,6 +92,15 @@ cmp -s "$top/doc/demo.jpg" "$dir/s/images/camera1/upright.jpg" || bad "an uprigh
 [ "$(ls "$dir/s/images")" = "$(printf 'camera1\ncamera2')" ] || bad "one camera for landscape and portrait images"
 [ -f "$dir/s/images/camera2/view_1.jpg" ] || bad "names of images"
 
+# A photosphere of a phone declares its projection in a packet of XMP.
+{
+    head -c 2 "$top/doc/demo.jpg"
+    printf '\377\341\0\122http://ns.adobe.com/xap/1.0/\0<a GPano:ProjectionType="equirectangular"/><!-- -->'
+    tail -c +3 "$top/doc/demo.jpg"
+} >"$dir/turned/sphere.jpg"
+import 5 'sphere.jpg: a 360-degree image (equirectangular), expected one of a plain lens: cut flat views .*v360=e:flat' "$dir/turned"
+rm "$dir/turned/sphere.jpg"
+
 # Masks: one mask, for COLMAP and for the scene.
 { printf 'P6 24 16 255\n'; head -c 1152 /dev/zero; } >"$dir/masks/$stem.ppm"
 import 0 '' --fps 10 --masks "$dir/masks" "$pictures"
@@ -140,6 +149,7 @@ if grep -q '^neu3d-videos' "$dir/kinds"; then
             awk '!n && ($1 > 3000 || $1 < -3000) { n = NR } END { printf "%.2f %.1f\n", n / 8000, NR / 8000 }'; }
         import 0 '' "$dir/tone.mp4"
         has '"sound":"sound.opus","cameras"'
+        grep -q "^sound: $dir/s/sound.opus, for adcgs-share --sound and adcgs-dec --sound$" "$dir/out" || { bad "the sound's path"; cat "$dir/out"; }
         [ "$(heard "$dir/s/sound.opus")" = '0.50 1.0' ] || bad "the tone at $(heard "$dir/s/sound.opus")"
         expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set matching_frames=0 -n 10 --threads 2 -q
         # The first images have no pose: the stream and the sound begin later, together.

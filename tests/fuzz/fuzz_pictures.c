@@ -8,6 +8,7 @@
 #include "outside_file.h"
 
 #include "media/image/image.h"
+#include "media/image/panorama.h"
 #include "media/points/points.h"
 
 #include <math.h>
@@ -43,6 +44,13 @@ static void read_image(const char *path)
     adcgs_image_free(&image);
 }
 
+static void read_projection(const uint8_t *data, size_t size)
+{
+    char projection[ADCGS_PANORAMA_NAME];
+    adcgs_panorama_find(projection, data, size);
+    FUZZ_REQUIRE(strlen(projection) < sizeof projection);
+}
+
 static void read_points(const char *path)
 {
     adcgs_error error = {ADCGS_OK, ""};
@@ -63,6 +71,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     snprintf(path, sizeof path, "%s/file", folder);
     write_outside_file(path, data, size);
     read_image(path);
+    read_projection(data, size);
     if (size < 5 || memcmp(data, "DRACO", 5) != 0) /* Draco files are read by a library */
         read_points(path);
     unlink(path);

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Photos made upright and smaller: the place of each pixel for each EXIF orientation, and that even areas stay even. */
+/** \file
+ * Photos made upright and smaller: the place of each pixel for each EXIF orientation, and that even areas stay even. Panoramas.
+ */
 #include "outside_files.h"
 
+#include "media/image/panorama.h"
 #include "media/image/photo.h"
 
 #include <math.h>
@@ -59,8 +62,45 @@ static void test_smaller(void **state)
     adcgs_image_free(&image);
 }
 
+/** The beginning of a JPEG: a segment of EXIF, then one with a packet of XMP. Cut off after n bytes, if they are fewer. */
+static const char *projection_in(const char *name, const char *packet, size_t n)
+{
+    static char found[ADCGS_PANORAMA_NAME];
+    static const char begin[] = "\xff\xd8\xff\xe1\0\x08GPano:\xff\xe1";
+    const size_t length = 2 + strlen(name) + 1 + strlen(packet), whole = sizeof begin - 1 + length;
+    uint8_t *const data = malloc(whole);
+    assert_non_null(data);
+    memcpy(data, begin, sizeof begin - 1);
+    data[sizeof begin - 1] = (uint8_t)(length >> 8);
+    data[sizeof begin] = (uint8_t)length;
+    memcpy(data + sizeof begin + 1, name, strlen(name) + 1);
+    memcpy(data + sizeof begin + 1 + strlen(name) + 1, packet, strlen(packet));
+    uint8_t *const cut = malloc(n < whole ? n + !n : whole); /* a sanitizer notices reads behind its end */
+    assert_non_null(cut);
+    memcpy(cut, data, n < whole ? n : whole);
+    adcgs_panorama_find(found, cut, n < whole ? n : whole);
+    free(cut);
+    free(data);
+    return found;
+}
+
+static void test_panorama(void **state)
+{
+    static const char xmp[] = "http://ns.adobe.com/xap/1.0/", sphere[] = "<a GPano:ProjectionType=\"equirectangular\"/>";
+    assert_string_equal(projection_in(xmp, sphere, SIZE_MAX), "equirectangular");
+    assert_string_equal(projection_in(xmp, "<GPano:ProjectionType>\n equirectangular </GPano:ProjectionType>", SIZE_MAX),
+                        "equirectangular");
+    assert_string_equal(projection_in(xmp, "<a GPano:ProjectionType = 'abcdefghijklmnopqrstuvwxyz'>", SIZE_MAX),
+                        "abcdefghijklmnopqrstuvw");
+    assert_string_equal(projection_in(xmp, "<a tiff:Make=\"A\"/>", SIZE_MAX), "");
+    assert_string_equal(projection_in("http://ns.example.org/other/", sphere, SIZE_MAX), "");
+    for (size_t n = 0; n < 100; n++)
+        assert_memory_equal(projection_in(xmp, sphere, n), "equirectangular", strlen(projection_in(xmp, sphere, n)));
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_turns), cmocka_unit_test(test_smaller)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_turns), cmocka_unit_test(test_smaller),
+                                       cmocka_unit_test(test_panorama)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

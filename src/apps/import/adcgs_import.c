@@ -39,7 +39,13 @@ static void print_text(const adcgs_import_report *r, const char *output)
            r->angle);
     if (r->cameras)
         printf("; poses of a camera %.2g %% apart", 100.0 * r->spread);
-    printf("\nnext: adcgs-enc %s/scene.json -o FILE\n", output);
+    printf("\n");
+    if (r->has_sound) {
+        printf("sound: ");
+        adcgs_text_show(stdout, output);
+        printf("/%s, for adcgs-share --sound and adcgs-dec --sound\n", ADCGS_IMPORT_SOUND);
+    }
+    printf("next: adcgs-enc %s/scene.json -o FILE\n", output);
 }
 
 static adcgs_status print_json(const adcgs_import_report *r, const char *output, adcgs_error *error)

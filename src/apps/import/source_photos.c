@@ -4,6 +4,7 @@
 
 #include "apps/import/source_images.h"
 
+#include "media/image/panorama.h"
 #include "media/image/photo.h"
 #include "media/kind.h"
 #include "scene/layouts/listing.h"
@@ -50,6 +51,19 @@ static adcgs_status explain_heif(const char *path, adcgs_status status, adcgs_er
                       kind->name, stem, adcgs_extension(path), stem);
 }
 
+/** A panorama has no lens of which COLMAP could find the parameters. */
+static adcgs_status refuse_panorama(const char *path, adcgs_error *error)
+{
+    char projection[ADCGS_PANORAMA_NAME];
+    ADCGS_TRY(adcgs_panorama_of(projection, path, error));
+    return !*projection
+               ? ADCGS_OK
+               : adcgs_fail(error, ADCGS_ERR_UNSUPPORTED,
+                            "%.100s: a 360-degree image (%s), expected one of a plain lens: cut flat views from it, as by "
+                            "ffmpeg -i IMAGE -vf v360=e:flat:h_fov=90:v_fov=60 flat.jpg",
+                            path, projection);
+}
+
 static adcgs_status add_picture(adcgs_source_images *sources, const char *path, const adcgs_import_options *options,
                                 adcgs_error *error)
 {
@@ -59,6 +73,7 @@ static adcgs_status add_picture(adcgs_source_images *sources, const char *path, 
     const adcgs_status status = adcgs_photo_probe(&photo, path, error);
     if (status != ADCGS_OK)
         return explain_heif(path, status, error);
+    ADCGS_TRY(refuse_panorama(path, error));
     ADCGS_TRY(find_camera(sources, &photo, &camera, error));
     adcgs_stem(stem, sizeof stem, path);
     adcgs_source_image *source = adcgs_source_images_add(sources, camera, stem, error);
