@@ -35,6 +35,24 @@ expect 0 "" $dec -o "$dir/v.mp4" --sound "$dir/a.m4a" --sound-offset 0.25
 heard "$dir/v.mp4" 0.75 1.0
 expect 0 "" $dec -o "$dir/v.mkv" --sound "$dir/a.wav" --sound-offset -0.25
 heard "$dir/v.mkv" 0.25 1.0
+# The sound of a scene, and its time.
+mkdir "$dir/scene"
+cp "$dir/a.opus" "$dir/scene/tone.opus"
+camera='"name":"a","width":8,"height":6,"fx":8,"fy":8,"images":"a_%d.ppm","time_offset":1'
+scene_json() { printf '{"adcgs_scene":1,"frame_rate":10,%s"cameras":[{%s,"camera_to_world":[[1,0,0,0],[0,1,0,0],[0,0,1,4]]}]}' "$1" \
+    "$camera" >"$dir/scene/scene.json"; }
+{ printf 'P6 8 6 255\n'; head -c 144 /dev/zero; } >"$dir/scene/a_0.ppm"
+if [ -x ./adcgs-enc ]; then # a build that reads scenes
+    scene_json '"sound":"tone.opus","sound_offset":0.75,'
+    expect 0 "" $dec -o "$dir/v.mp4" --sound "$dir/scene"
+    heard "$dir/v.mp4" 0.25 1.0
+    expect 0 "" $dec -o "$dir/v.mp4" --sound "$dir/scene/scene.json" --sound-offset 0.25
+    heard "$dir/v.mp4" 0.75 1.0
+    scene_json ''
+    expect 0 "this scene has no sound" $dec -o "$dir/v.mp4" --sound "$dir/scene"
+    [ -z "$(ffprobe -v error -select_streams a -show_entries stream=index -of csv=p=0 "$dir/v.mp4")" ] || bad "a sound from a scene without one"
+    expect 3 "nothing" $dec -o "$dir/x.mp4" --sound "$dir/nothing.json"
+fi
 
 expect 5 "x.mp4: this container stores no pcm_s16le" $dec -o "$dir/x.mp4" --sound "$dir/a.wav"
 expect 5 "x.webm: this container stores no aac" $dec -o "$dir/x.webm" --sound "$dir/a.m4a"

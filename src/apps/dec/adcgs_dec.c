@@ -343,6 +343,8 @@ int main(int argc, char **argv)
     adcgs_decoder *decoder = NULL;
     adcgs_status status = adcgs_dec_check(&s, &error);
     if (status == ADCGS_OK)
+        status = adcgs_dec_find_sound(&s, &error);
+    if (status == ADCGS_OK)
         status = adcgs_cli_pool(&cli, &s.config.pool, s.config.threads, &error);
     adcgs_interrupt_catch(1);
     s.opened = adcgs_seconds();
@@ -358,6 +360,7 @@ int main(int argc, char **argv)
     adcgs_operand_close(&s.source);
     adcgs_operand_close(&s.beside_source);
     adcgs_pool_free(&s.config.pool);
+    free(s.sound);
     if (adcgs_interrupted())
         raise(adcgs_interrupted()); /* ends with the signal, so that the shell sees the reason; the handler is removed by now */
     if (status == ADCGS_OK)

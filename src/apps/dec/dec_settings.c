@@ -6,6 +6,7 @@
 
 #include "apps/dec/dec_open.h"
 #include "base/cpu_detect.h"
+#include "scene/layouts/sound_file.h"
 #include "system/numbers.h"
 
 #include <stdlib.h>
@@ -53,9 +54,9 @@ static void add_video_options(adcgs_option_table *out, adcgs_dec_settings *s)
          "bits per second of a video (8M) instead of a quality", NULL, NULL},
         {"codec-options", 0, ADCGS_OPTION_STRING, &s->video.options, 0, 0, "NAME=VALUE:...",
          "options of FFmpeg for the encoder, and pix_fmt", NULL, NULL},
-        {"sound", 0, ADCGS_OPTION_FILE, &s->video.sound, 0, 0, "FILE", "sound to put into a video, unchanged", NULL, NULL},
+        {"sound", 0, ADCGS_OPTION_FILE, &s->video.sound, 0, 0, "FILE|SCENE", "sound to put into a video, unchanged", NULL, NULL},
         {"sound-offset", 0, ADCGS_OPTION_SECONDS, &s->sound_offset, -1e6, 1e6, "TIME",
-         "time of the stream at which the sound begins (default: 0)", NULL, &s->has_sound_offset},
+         "time of the stream at which the sound begins (default: 0, or as\nthe scene says)", NULL, &s->has_sound_offset},
     };
     adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
@@ -258,5 +259,20 @@ adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--md5 and --frametimes need standard output, which --output uses");
     if (s->verify && (strlen(s->verify) != 32 || strspn(s->verify, "0123456789abcdefABCDEF") != 32))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--verify %s: expected 32 hexadecimal digits", s->verify);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_dec_find_sound(adcgs_dec_settings *s, adcgs_error *error)
+{
+#ifdef HAVE_ENCODER
+    double begin;
+    if (!s->video.sound)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_sound_file_find(&s->sound, &begin, s->video.sound, error));
+    if (!s->sound)
+        adcgs_cli_note(s->cli, "%s: this scene has no sound", s->video.sound);
+    s->video.sound = s->sound;
+    s->sound_offset = s->has_sound_offset ? s->sound_offset : begin;
+#endif
     return ADCGS_OK;
 }

@@ -18,6 +18,7 @@ typedef struct adcgs_dec_settings {
     adcgs_config config;
     int quiet, order, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     int has_sound_offset;
+    char *sound;                         /**< file of the sound, found by adcgs_dec_find_sound(); the caller free()s it */
     double sound_offset;                 /**< time of the stream at which the sound begins, in seconds */
     double part;                         /**< part of the stream at which the frame lies (--time N%); negative: not given */
     double opened;                       /**< time before opening the input, in seconds */
@@ -28,6 +29,8 @@ typedef struct adcgs_dec_settings {
 void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option_table *options);
 /** Checks the rules that the table cannot express, and sets the derived settings. */
 adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error);
+/** Replaces a scene that --sound names by its sound, if it has one, and takes over the sound's time. */
+adcgs_status adcgs_dec_find_sound(adcgs_dec_settings *s, adcgs_error *error);
 /** True if the coding of a video was specified. */
 int adcgs_dec_has_style(const adcgs_dec_settings *s);
 

@@ -4,12 +4,10 @@
 
 #include "apps/share/share_sound.h"
 
-#include "scene/layouts/open.h"
-#include "system/extension.h"
+#include "scene/layouts/sound_file.h"
 #include "system/file.h"
-#include "system/paths.h"
 
-#include <strings.h>
+#include <stdlib.h>
 
 /* Bytes: many times the stream, and in base 64 a third more; chosen by hand, not measured. */
 #define SOUND_FILE_MAX ((uint64_t)64 << 20)
@@ -43,12 +41,9 @@ static adcgs_status load_file(adcgs_share_sound *sound, const char *path, adcgs_
 
 adcgs_status adcgs_share_load_sound(adcgs_share_sound *sound, const char *path, adcgs_error *error)
 {
-    adcgs_scene *scene;
-    if (!adcgs_is_folder(path) && strcasecmp(adcgs_extension(path), "json"))
-        return load_file(sound, path, error);
-    ADCGS_TRY(adcgs_scene_open(&scene, path, &(adcgs_scene_options){.is_outline = 1}, error));
-    sound->offset = scene->sound_begin;
-    const adcgs_status status = scene->sound ? load_file(sound, scene->sound, error) : ADCGS_OK;
-    adcgs_scene_free(&scene);
+    char *file;
+    ADCGS_TRY(adcgs_sound_file_find(&file, &sound->offset, path, error));
+    const adcgs_status status = file ? load_file(sound, file, error) : ADCGS_OK;
+    free(file);
     return status;
 }
