@@ -1,19 +1,25 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Build backend of the package (PEP 517): a wheel that holds libadcgs. It needs no other package, so it works offline.
+"""Build backend of the package (PEP 517): a wheel that holds libadcgs, and a source distribution of both. It needs no other
+package, so it works offline.
 
 ADCGS_LIBRARY names a libadcgs.so to use; without it the library is compiled from the sources around this folder. Only the folder
 of the wheel is written to, except that a checkout without `configure` gets one.
 """
 import base64
+import gzip
 import hashlib
+import io
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sysconfig
+import tarfile
 import tempfile
 import zipfile
 
+DATE = 315532800  # of all files in archives: 1980
 HERE = pathlib.Path(__file__).resolve().parent
 TOP = HERE.parent
 METADATA = """Metadata-Version: 2.1
@@ -93,5 +99,53 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     return name
 
 
+def _makefiles(name="Makefile.am"):
+    """Makefile.am, and the files that it includes: make looks for all of them."""
+    yield name
+    for included in re.findall(r"^include (\S+)$", (TOP / name).read_text(), re.MULTILINE):
+        yield from _makefiles(included)
+
+
+def _sources(top):
+    """The paths of the package, of the decoder, and of the files that build it, also those that autoreconf makes."""
+    found = {*_makefiles(), "configure.ac", "COPYING", "doc/python.md", "doc/Doxyfile.in", "build-aux/version.sh"}
+    for pattern in ("python/adcgs/*.py", "python/adcgs/py.typed", "python/*.toml", "python/wheel_backend.py", "codec/**/*.[ch]",
+                    "codec/**/*.in", "codec/**/*.map", "m4/*.m4", "build-aux/*", "configure", "aclocal.m4", "config.h.in", "Makefile.in"):
+        found |= {str(path.relative_to(top)) for path in top.glob(pattern)}
+    return sorted(found - {"python/adcgs/_where.py"})
+
+
+def _configured(folder):
+    """A copy of the sources with a `configure`."""
+    for path in _sources(TOP):
+        pathlib.Path(folder, path).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(TOP / path, pathlib.Path(folder, path))
+    pathlib.Path(folder, "m4").mkdir(exist_ok=True)
+    subprocess.run(["autoreconf", "-fi"], cwd=folder, check=True)
+    shutil.rmtree(pathlib.Path(folder, "autom4te.cache"), ignore_errors=True)
+    return pathlib.Path(folder)
+
+
+def _write_sdist(top, path, version):
+    with gzip.GzipFile(path, "wb", mtime=0) as zipped, tarfile.open(fileobj=zipped, mode="w", format=tarfile.PAX_FORMAT) as archive:
+
+        def add(name, data, mode=0o644):
+            entry = tarfile.TarInfo(f"adcgs-{version}/{name}")  # one date for all: make takes no file for newer than another
+            entry.mode, entry.mtime, entry.size = mode, DATE, len(data)
+            archive.addfile(entry, io.BytesIO(data))
+
+        description = (top / "doc/python.md").read_text(encoding="utf-8")
+        add("PKG-INFO", METADATA.format(version=version, description=description).encode())
+        add("pyproject.toml", (HERE / "pyproject.toml").read_bytes().replace(b'["."]', b'["python"]'))
+        for name in _sources(top):
+            add(name, (top / name).read_bytes(), 0o755 if os.access(top / name, os.X_OK) else 0o644)
+
+
 def build_sdist(sdist_directory, config_settings=None):
-    raise RuntimeError("adcgs: the source distribution is the tarball of `make dist`; pip wheel needs the whole source tree")
+    """The package and the decoder, which pip compiles with a C compiler and make."""
+    version = _version()
+    name = f"adcgs-{version}.tar.gz"
+    with tempfile.TemporaryDirectory(prefix="adcgs-") as folder:
+        top = TOP if (TOP / "configure").exists() else _configured(folder)
+        _write_sdist(top, os.path.join(sdist_directory, name), version)
+    return name

@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
 # The Python package, compared with the built library and the programs: layouts, digests, streams in parts, failures; and as
-# installed, by make or from a wheel.
+# installed, by make, from a wheel or from a source distribution; with NumPy 1 and 2, where pip can fetch the other one. With
+# ADCGS_FULL=1 pip compiles the source distribution, else it takes the built library.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-info
 library=$PWD/.libs/libadcgs.so
@@ -25,6 +26,18 @@ in_tree()
 }
 in_tree test_layout.py "$source" "$dir" $compiler
 in_tree test_adcgs.py
+
+# The other NumPy than the installed one.
+case $("$python" -c 'import numpy; print(numpy.__version__)') in
+1.*) other='numpy>=2,<3' ;;
+*) other='numpy>=1.22,<2' ;;
+esac
+if timeout 120 "$python" -m pip install -q --retries 0 --timeout 10 --only-binary :all: --no-deps --target "$dir/other" "$other" >"$dir/log" 2>&1
+then
+    ran env PYTHONPATH="$dir/other:$source/python" ADCGS_LIBRARY="$library" "$python" "$source/tests/python/test_adcgs.py"
+else
+    echo "skipped: $other: pip cannot fetch it"
+fi
 
 # A package that is not installed names the missing variable, and an invalid library is named.
 ran sh -c "! PYTHONPATH='$source/python' ADCGS_LIBRARY= '$python' -c 'import adcgs'"
@@ -78,6 +91,18 @@ END
 digest=$(./adcgs-dec "$VECTORS/good-sys-cams.adcgs" --md5 --camera 0 --time 0 | grep -o -w -E '[0-9a-f]{32}')
 printf '%s\n%s %s\n' "$digest" "$venv/adcgs/__init__.py" "$(sed -n 's/^PACKAGE_VERSION = //p' Makefile)" | diff - "$dir/log" ||
     bad "the package of the wheel"
+cp "$dir/log" "$dir/expected"
+
+# pip makes the same wheel of the source distribution, and installs it.
+(cd "$source/python" && ran "$python" -c 'import sys, wheel_backend; wheel_backend.build_sdist(sys.argv[1])' "$dir")
+ran env ADCGS_LIBRARY="$library" "$python" -m pip wheel --no-cache-dir --no-build-isolation --no-deps -w "$dir/three" "$dir"/adcgs-*.tar.gz
+cmp "$wheel" "$dir/three/${wheel##*/}" || bad "the wheel of the source distribution differs"
+given=$library
+[ -z "${ADCGS_FULL-}" ] || given=
+ran env ADCGS_LIBRARY="$given" CFLAGS=-O1 "$python" -m pip install --no-cache-dir --no-build-isolation --no-deps \
+    --target "$dir/sdist" "$dir"/adcgs-*.tar.gz
+(cd / && ran env PYTHONPATH="$dir/sdist" "$python" "$dir/wheel.py" "$VECTORS/good-sys-cams.adcgs")
+sed "s|$venv|$dir/sdist|" "$dir/expected" | diff - "$dir/log" || bad "the package of the source distribution"
 [ -e "$venv/adcgs/py.typed" ] && [ -e "$venv/adcgs/libadcgs.so" ] || bad "files of the wheel"
 [ -z "$(cd "$source/python" && find . -name '*.egg-info' -o -name build)" ] || bad "the wheel left files in the source tree"
 exit $failed
