@@ -4,7 +4,7 @@
 'use strict';
 
 const listeners = new Map();    // event: set of functions
-const FLOAT64 = 8, POSE = 40, POSE_ROW = 32; // bytes in adcgs_camera: cam_to_world and one of its rows
+const FLOAT64 = 8, POSE = 40;   // bytes in adcgs_camera: cam_to_world
 
 function emit(event, detail = {}) {
     for (const listener of listeners.get(event) || [])
@@ -25,23 +25,14 @@ function setPlaying(playing) {
         press(' '.charCodeAt(0));
 }
 
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const unit = a => {
-    const length = Math.hypot(...a);
-    if (!(length > 0) || !isFinite(length))
-        throw new TypeError('setCamera: position and target need three finite numbers each, and a distance');
-    return a.map(x => x / length);
-};
-
 /** The bytes of the current camera, moved to a position, with a target in the middle of its image. */
 function cameraLookingAt({ position, target, up }) {
-    const camera = cameraOf(1), numbers = new DataView(camera.buffer);
-    const at = (row, column) => POSE + row * POSE_ROW + column * FLOAT64;
-    const upright = up || [0, 1, 2].map(row => -numbers.getFloat64(at(row, 1), true));
-    const forward = unit([0, 1, 2].map(i => target[i] - position[i])), right = unit(cross(forward, upright));
-    const down = cross(forward, right);
-    [right, down, forward, position].forEach((axis, column) => axis.slice(0, 3).forEach((value, row) =>
-        numbers.setFloat64(at(row, column), value, true)));
+    const camera = cameraOf(1), numbers = new DataView(camera.buffer), at = i => POSE + i * FLOAT64;
+    const upright = up || [1, 5, 9].map(i => -numbers.getFloat64(at(i), true));
+    const pose = poseLookingAt(position, target, upright, () => {
+        throw new TypeError('setCamera: position and target need three finite numbers each, and a distance');
+    });
+    pose.forEach((value, i) => numbers.setFloat64(at(i), value, true));
     camera.fill(0, CAMERA_NAME);
     return camera;
 }

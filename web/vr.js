@@ -12,7 +12,7 @@ async function offerHeadset() {
 /** The directions and the centre of a camera: columns of its pose. */
 function axesOf(camera) {
     const numbers = new DataView(camera.buffer);
-    const column = i => [0, 1, 2].map(row => numbers.getFloat64(POSE + row * POSE_ROW + i * FLOAT64, true));
+    const column = i => [0, 1, 2].map(row => numbers.getFloat64(POSE + (4 * row + i) * FLOAT64, true));
     return { right: column(0), down: column(1), forward: column(2), centre: column(3) };
 }
 

@@ -5,6 +5,7 @@
 #include "play/filmed_view.h"
 
 #include "base/base.h"
+#include "geometry/pose_product.h"
 #include "geometry/rotation.h"
 
 #include <math.h>
@@ -12,14 +13,6 @@
 #define RETURN_SECONDS 0.3 /* in which a view outside goes most of its way back, while it plays */
 #define LOOP_SECONDS 0.8   /* of the scene, from the path's end to its start; at most half of the scene */
 #define PART_STEPS 12      /* halvings: 1/4096 of an offset is invisible */
-
-/** out = a b, poses of 3x4 numbers; out must be neither a nor b. */
-static void multiply(const double a[12], const double b[12], double out[12])
-{
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 4; j++)
-            out[4 * i + j] = a[4 * i] * b[j] + a[4 * i + 1] * b[4 + j] + a[4 * i + 2] * b[8 + j] + (j == 3 ? a[4 * i + 3] : 0.0);
-}
 
 static void transform(const double pose[12], const double point[3], double out[3])
 {
@@ -82,7 +75,7 @@ static void place_part(const double base[12], const double offset[12], const dou
     transform(none, target, turned);
     for (int i = 0; i < 3; i++)
         none[4 * i + 3] = target[i] - turned[i] + part * (whole[i] - target[i]);
-    multiply(base, none, pose);
+    adcgs_pose_product(base, none, pose);
 }
 
 static void place_beside(const adcgs_filmed_view *view, double part, double pose[12])
@@ -99,9 +92,9 @@ static void return_to_start(adcgs_filmed_view *view, const adcgs_play_clock *clo
     view->returning = view->returning && clock->turns > 0 && part < 1;
     if (!view->returning)
         return;
-    memcpy(pose, view->base, sizeof pose);
-    adcgs_pose_invert(pose);
-    multiply(pose, view->end, offset);
+    memcpy(offset, view->base, sizeof offset);
+    adcgs_pose_invert(offset);
+    adcgs_pose_product(offset, view->end, offset);
     place_part(view->base, offset, view->target, 1 - part * part * (3 - 2 * part), pose);
     memcpy(view->base, pose, sizeof view->base);
 }
@@ -151,7 +144,7 @@ void adcgs_filmed_view_moved(adcgs_filmed_view *view, const adcgs_orbit_control 
     double inverse[12];
     memcpy(inverse, view->base, sizeof inverse);
     adcgs_pose_invert(inverse);
-    multiply(inverse, control->camera.cam_to_world, view->offset);
+    adcgs_pose_product(inverse, control->camera.cam_to_world, view->offset);
     transform(inverse, control->target, view->target);
     view->beside = 1;
     view->part = 1;

@@ -3,23 +3,7 @@
 # adcgs-dec --play, controlled by scripts: without a display through SDL's dummy driver, and on a display of Xvfb if available.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
-need adcgs-dec adcgs-enc adcgs-demo-scene
-dec=$PWD/adcgs-dec
-
-tiny_stream 60
-
-# play CODE TEXT OPTIONS...: play with a script from standard input; checks the exit code, and TEXT on standard error.
-play()
-{
-    code=$1 text=$2
-    shift 2
-    cat >"$dir/script"
-    (cd "$dir" && timeout 60 $display "$dec" s.adcgs --play --script script --threads 2 "$@") >"$dir/out" 2>"$dir/err"
-    got=$?
-    [ "$got" -eq "$code" ] || { bad "exit code $got, expected $code, on $where:"; cat "$dir/script" "$dir/err"; }
-    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message on $where"; cat "$dir/err"; }
-    [ "$(wc -l <"$dir/err")" -eq "$([ "$code" -eq 0 ] && echo 0 || echo 1)" ] || { bad "not one line of message"; cat "$dir/err"; }
-}
+. "${srcdir:-.}/tests/cli/plays.sh"
 
 # same PICTURE OPTIONS...: an image of the player equals byte by byte the one that adcgs-dec renders with these options.
 same()
@@ -302,15 +286,6 @@ key q
 END
 }
 
-where="the dummy driver" display=
-SDL_VIDEODRIVER=dummy SDL_RENDER_DRIVER=software
-export SDL_VIDEODRIVER SDL_RENDER_DRIVER
-echo quit >"$dir/script"
-$dec "$dir/s.adcgs" --play --script "$dir/script" 2>"$dir/err" || {
-    [ $? -eq 5 ] && grep -q "which this build does not have$" "$dir/err" && { echo "skipped: no player in this build"; exit 77; }
-    bad "the player does not start"
-    cat "$dir/err"
-}
 pictures
 behaviour
 files

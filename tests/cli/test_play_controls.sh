@@ -3,32 +3,7 @@
 # The controls, the hint and the help of adcgs-dec --play, used by scripts through SDL's dummy driver. ADCGS_SHOTS names a folder for
 # screenshots. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
-need adcgs-dec adcgs-enc adcgs-demo-scene
-dec=$PWD/adcgs-dec
-tiny_stream 60
-SDL_VIDEODRIVER=dummy SDL_RENDER_DRIVER=software
-export SDL_VIDEODRIVER SDL_RENDER_DRIVER
-echo quit >"$dir/script"
-$dec "$dir/s.adcgs" --play --script "$dir/script" 2>"$dir/err" || {
-    [ $? -eq 5 ] && grep -q "which this build does not have$" "$dir/err" && { echo "skipped: no player in this build"; exit 77; }
-    bad "the player does not start"
-    cat "$dir/err"
-}
-# A remark says why letters are plain; it is no fault of the tests below.
-[ ! -s "$dir/err" ] || grep -q "^adcgs-dec: .*: the player uses plain letters$" "$dir/err" || { bad "a message"; cat "$dir/err"; }
-if [ -s "$dir/err" ]; then fonts=; else fonts=1; fi
-
-# play CODE TEXT OPTIONS...: as in test_play.sh.
-play()
-{
-    code=$1 text=$2
-    shift 2
-    cat >"$dir/script"
-    (cd "$dir" && timeout 60 "$dec" s.adcgs --play --quiet --script script --threads 2 "$@") >"$dir/out" 2>"$dir/err"
-    got=$?
-    [ "$got" -eq "$code" ] || { bad "exit code $got, expected $code:"; cat "$dir/script" "$dir/err"; }
-    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message"; cat "$dir/err"; }
-}
+. "${srcdir:-.}/tests/cli/plays.sh"
 
 # Buttons have the effect of their keys; the slider moves the time and never the camera.
 play 0 "" --size 320x240 --time 0 <<'END'

@@ -18,6 +18,7 @@ share engine.js 'Engine, memoryOf, OK, ERR_FPENV, ARRIVED_SEGMENT, ARRIVED_END, 
 share events.js 'KEYS, KEY, BUTTON, MOTION, WHEEL, LOST, WHEEL_STEP, ZOOM_STEP'
 share gpu.js 'Gpu, VERTEX, FRAGMENT'
 share limits.js 'styleLimits'
+share look.js 'poseLookingAt'
 share source.js 'Flow, readStream'
 cp "$here"/*.js "$here"/*.d.ts "$here/README.md" "$out"
 cp "$here/../../COPYING" "$out/LICENSE"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 // Cameras: objects of scripts, and the bytes of adcgs_camera (adcgs/types.h).
 import { AdcgsError } from './error.js';
+import { poseLookingAt } from './look.js';
 
 const WIDTH = 0, HEIGHT = 4, LENS = 8, POSE = 40, NEAR = 136, NAME = 144, NAME_MOST = 63; // bytes in adcgs_camera
 const TIME = 208, PATH = 216;                                                           // in adcgs_filmed_camera
@@ -51,22 +52,14 @@ export function writeCamera(camera, size) {
     return bytes;
 }
 
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const unit = (a, text) => {
-    const length = Math.hypot(...a);
-    if (!(length > 0))
-        throw new AdcgsError('USAGE', `camera: ${text}`);
-    return a.map(x => x / length);
-};
-
 /** A camera at a position with a target in the middle of its image; the first view of the clip gives the missing members. */
 export function lookAt({ position, target, up, fov, near }, home, centre, width, height) {
     const place = vector(position, 'position'), aim = target ? vector(target, 'target') : centre;
     const upright = up ? vector(up, 'up') : [1, 5, 9].map(i => -home.camToWorld[i]);
-    const forward = unit(aim.map((x, i) => x - place[i]), 'position and target are the same');
-    const right = unit(cross(forward, upright), 'it looks along its up direction'), down = cross(forward, right);
+    const camToWorld = poseLookingAt(place, aim, upright, why => {
+        throw new AdcgsError('USAGE', `camera: ${why}`);
+    });
     const angle = fov === undefined ? 2 * Math.atan(home.height / 2 / home.fy) : finite(fov, 'fov') * Math.PI / 180;
     const focal = height / 2 / Math.tan(angle / 2);
-    return { width, height, fx: focal, fy: focal, cx: width / 2, cy: height / 2, near: near === undefined ? home.near : near,
-             camToWorld: [0, 1, 2].flatMap(row => [right[row], down[row], forward[row], place[row]]) };
+    return { width, height, fx: focal, fy: focal, cx: width / 2, cy: height / 2, near: near === undefined ? home.near : near, camToWorld };
 }

@@ -4,6 +4,7 @@
 
 #include "media/splats/glb_nodes.h"
 
+#include "geometry/pose_product.h"
 #include "geometry/quaternion_matrix.h"
 
 #include <math.h>
@@ -29,17 +30,6 @@ static adcgs_status numbers(const adcgs_glb *g, json_t *node, const char *name, 
             return adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: a node's %s: expected %zu numbers", g->path, name, n);
     }
     return ADCGS_OK;
-}
-
-/** out = a b; out may be b. */
-static void multiply(const double a[12], const double b[12], double out[12])
-{
-    double product[12];
-    for (int i = 0; i < 12; i++) {
-        const double *const row = a + i / 4 * 4, *const column = b + i % 4;
-        product[i] = row[0] * column[0] + row[1] * column[4] + row[2] * column[8] + (i % 4 == 3 ? row[3] : 0.0);
-    }
-    memcpy(out, product, sizeof product);
 }
 
 /** Matrix from translation, rotation (x y z w) and scale. */
@@ -132,7 +122,7 @@ static adcgs_status place_node(double matrix[12], size_t *root, const adcgs_glb 
         if (steps++ > DEPTH_MAX)
             return bad(g, ADCGS_ERR_UNSUPPORTED, "nodes with more than 256 parents one above the other");
         ADCGS_TRY(matrix_of(g, json_array_get(of->nodes, at), one));
-        multiply(one, matrix, matrix);
+        adcgs_pose_product(one, matrix, matrix);
         *root = at;
     }
     return ADCGS_OK;

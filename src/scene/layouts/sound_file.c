@@ -4,9 +4,9 @@
 
 #include "scene/layouts/sound_file.h"
 
-#include "system/paths.h"
-#include "system/extension.h"
 #include "scene/layouts/open.h"
+#include "system/extension.h"
+#include "system/paths.h"
 
 #include <stdlib.h>
 #include <strings.h>
