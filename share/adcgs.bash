@@ -81,5 +81,5 @@ _adcgs()
     done
 }
 
-complete -F _adcgs adcgs adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join \
+complete -F _adcgs adcgs adcgs-check adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join \
     adcgs-share adcgs-sweep

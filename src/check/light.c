@@ -4,35 +4,9 @@
 
 #include "check/light.h"
 
+#include "check/check_footage.h"
+
 #include <math.h>
-
-/* Pixels along the shorter side of images for thumbnails: each cell has several; chosen by hand, not measured. */
-enum { SIDE = 2 * ADCGS_THUMBNAIL_SIDE };
-
-/** The largest factor of reduction that leaves SIDE pixels along the shorter side of each image; at least 1. */
-static int divide_for(const adcgs_scene *scene)
-{
-    int side = 0;
-    for (uint32_t i = 0; i < scene->n_views[ADCGS_SPLIT_TRAIN]; i++) {
-        const adcgs_camera *const camera = &scene->views[ADCGS_SPLIT_TRAIN][i].camera;
-        const int shorter = ADCGS_MIN(camera->width, camera->height);
-        side = side ? ADCGS_MIN(side, shorter) : shorter;
-    }
-    return ADCGS_MAX(side / SIDE, 1);
-}
-
-static adcgs_status compute_thumbnails(adcgs_thumbnail *thumbnails, const adcgs_scene *scene,
-                                       const adcgs_image_store_config *config, adcgs_pool *pool, adcgs_error *error)
-{
-    adcgs_image_store *pictures;
-    adcgs_image_store_config small = *config;
-    small.split = ADCGS_SPLIT_TRAIN;
-    small.divide = divide_for(scene);
-    small.thumbnails = thumbnails;
-    const adcgs_status status = adcgs_image_store_load(&pictures, scene, &small, pool, error);
-    adcgs_image_store_free(&pictures);
-    return status;
-}
 
 static void add_up_track(adcgs_scene_view *views, const uint8_t *behind, const uint32_t *order, uint32_t n,
                          const adcgs_thumbnail *thumbnails)
@@ -68,7 +42,7 @@ adcgs_status adcgs_light_compensate(adcgs_scene *scene, adcgs_fault *found, cons
     adcgs_thumbnail *const thumbnails = adcgs_alloc(NULL, n, sizeof *thumbnails, error);
     uint8_t *const behind = adcgs_alloc(NULL, n, sizeof *behind, error);
     adcgs_status status =
-        thumbnails && behind ? compute_thumbnails(thumbnails, scene, config, pool, error) : adcgs_alloc_status(error);
+        thumbnails && behind ? adcgs_thumbnails_load(thumbnails, scene, config, pool, error) : adcgs_alloc_status(error);
     if (status == ADCGS_OK)
         status = adcgs_camera_order_find(&tracks, views, n, error);
     if (status == ADCGS_OK) {

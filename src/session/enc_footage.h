@@ -1,22 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Warnings on a scene's footage before training: doubled or missing images, light, clocks, poses. */
+/** \file Messages on a scene's footage before training. */
 #ifndef ADCGS_SESSION_ENC_FOOTAGE_H
 #define ADCGS_SESSION_ENC_FOOTAGE_H
 
-#include "check/axes.h"
-#include "check/faults.h"
+#include "check/check_footage.h"
 #include "cli/cli.h"
-#include "scene/scene.h"
-#include "scene/thumbnail_stats.h"
 
-/**
- * Prints faults of footage (check/faults.h) unless --quiet, one line for each kind. scene: the part that is trained, which begins
- * at `begins` seconds of the whole; found: its matched images; doubled: its repeated images; thumbnails: those of its training
- * views. *told: kinds already reported for earlier parts of the scene, initially 0. Prints nothing on allocation failure.
- */
-void adcgs_enc_diagnose_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo *found,
-                                const adcgs_fault *doubled, adcgs_pool *pool, const adcgs_thumbnail *thumbnails, double begins,
-                                unsigned *told);
+/** Checks footage and prints the findings, unless --quiet. *known: as for adcgs_check_footage(). */
+void adcgs_enc_diagnose_footage(const adcgs_cli *cli, const adcgs_footage_facts *facts, adcgs_pool *pool, unsigned *known);
 
 /** Prints the scene's remarks, unless --quiet. */
 void adcgs_enc_report_remarks(const adcgs_cli *cli, const adcgs_scene *scene);

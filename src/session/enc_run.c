@@ -117,8 +117,8 @@ static void look_at_footage(adcgs_enc_context *w)
     if (!w->thumbnails || !w->t->divide)
         return;
     adcgs_progress_clear(&w->progress);
-    adcgs_enc_diagnose_footage(w->progress.cli, w->t->scene, &w->t->stereo, &w->t->duplicates, w->t->pool, w->thumbnails,
-                               w->begins, &w->diagnosed);
+    const adcgs_footage_facts facts = {w->t->scene, w->begins, &w->t->stereo, w->thumbnails};
+    adcgs_enc_diagnose_footage(w->progress.cli, &facts, w->t->pool, &w->diagnosed);
     free_thumbnails(w);
 }
 

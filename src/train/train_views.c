@@ -5,7 +5,7 @@
 #include "camera/path.h"
 #include "grad/random.h"
 #include "render/render.h"
-#include "train/static/retime_duplicates.h"
+#include "train/retime_duplicates.h"
 
 #include <math.h>
 
@@ -22,7 +22,7 @@ static adcgs_status load_pictures(adcgs_trainer *t, int divide, adcgs_error *err
                                              .user = t->loading_user,
                                              .thumbnails = thumbnails};
     adcgs_status status = adcgs_image_store_load(&t->pictures, t->scene, &config, t->pool, error);
-    if (status == ADCGS_OK && thumbnails)
+    if (status == ADCGS_OK && t->config.retime_duplicates)
         status = adcgs_retime_duplicates(t, thumbnails, error);
     adcgs_free(NULL, own);
     return status;

@@ -62,7 +62,7 @@ wants "adcgs-dec http://host/n" ""
 
 # Each program prints its complete table, with all options of its help.
 cd "$here" || exit 99
-for program in adcgs adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join adcgs-share \
+for program in adcgs adcgs-check adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join adcgs-share \
     adcgs-sweep; do
     [ -x "./$program" ] || continue
     "./$program" --completion | cut -f 1 | grep -v '^-$' | sort -u >"$dir/table"

@@ -5,7 +5,7 @@
 # shellcheck disable=SC2030,SC2031
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
-need adcgs-demo-scene adcgs-enc adcgs-eval adcgs-info adcgs-dec adcgs-import adcgs-sweep tests/cli/make-scenes
+need adcgs-check adcgs-demo-scene adcgs-enc adcgs-eval adcgs-info adcgs-dec adcgs-import adcgs-sweep tests/cli/make-scenes
 command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
 top=$(cd "${srcdir:-.}" && pwd)
 : >"$dir/samples"
@@ -48,6 +48,12 @@ for name in s p; do
     printed "info-$name" ./adcgs-info --json "$dir/$name.adcgs"
     sample adcgs-info "$dir/info-$name.json"
 done
+# A scene whose images have no times, which is a finding.
+mkdir "$dir/untimed" && cp -r "$scene/train" "$dir/untimed" &&
+    sed 's/"time": *[0-9.e-]*,\{0,1\}//' "$scene/transforms_train.json" >"$dir/untimed/transforms.json" || bad "no scene without times"
+./adcgs-check "$dir/untimed" --json --quiet >"$dir/check.json" 2>"$dir/err"
+[ $? -eq 1 ] || { bad "adcgs-check finds nothing"; cat "$dir/err" "$dir/check.json"; }
+sample adcgs-check "$dir/check.json"
 printed eval ./adcgs-eval "$dir/s.adcgs" "$scene" --json
 printed eval-all ./adcgs-eval "$dir/s.adcgs" "$scene" --json --split train --metrics all --crop=-1,-1,-1,1,1,1
 printed eval-dynamic ./adcgs-eval "$dir/s.adcgs" "$scene" --json --metrics dynamic-psnr

@@ -3,9 +3,9 @@
 # A letter has one meaning in all programs: their option tables agree with the table of doc/hacking/add-an-option.md, which has
 # each letter once. Former letters are still understood, with a remark that names the present one.
 . "${srcdir:-.}/tests/cli/common.sh"
-need adcgs adcgs-conform adcgs-dec adcgs-demo-grid adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join \
+need adcgs adcgs-check adcgs-conform adcgs-dec adcgs-demo-grid adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join \
     adcgs-share adcgs-sweep
-programs="adcgs adcgs-conform adcgs-dec adcgs-demo-grid adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join
+programs="adcgs adcgs-check adcgs-conform adcgs-dec adcgs-demo-grid adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join
 adcgs-share adcgs-sweep"
 
 # "LETTER OPTION VALUE PROGRAM" for each letter of each program's table; the value of a flag is -.

@@ -18,7 +18,7 @@ options()
     grep -o -E -e '(-[a-zA-Z] *, *)?--[a-z0-9-]+( +[A-Z][A-Za-z:,|]*)?' | sed 's/  */ /g; s/ *, */, /; s/ *$//' | sort -u
 }
 
-for program in adcgs adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-conform adcgs-import adcgs-join adcgs-share adcgs-sweep adcgs-demo-scene; do
+for program in adcgs adcgs-check adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-conform adcgs-import adcgs-join adcgs-share adcgs-sweep adcgs-demo-scene; do
     if [ ! -x "./$program" ]; then
         fault "$program: not built"
         continue

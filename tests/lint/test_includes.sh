@@ -40,7 +40,7 @@ codec="base bits geom net model splat render stream api"
 check codec "" $codec
 # The command line comes late: libraries neither print nor parse.
 check src "$codec" system geometry net media scene camera metric synthetic grad fmodel init check train encode cli session play \
-    apps/shared apps/adcgs apps/conform apps/dec apps/demo apps/enc apps/eval apps/import apps/info apps/join apps/share apps/sweep
+    apps/shared apps/adcgs apps/check apps/conform apps/dec apps/demo apps/enc apps/eval apps/import apps/info apps/join apps/share apps/sweep
 
 # Only codec/api uses the installed headers decoder.h, frame.h and adcgs.h. The folders below it use those of types, and of the
 # interface of base.

@@ -20,6 +20,7 @@ typedef struct verb {
 /* In the order of their use. */
 static const verb verbs[] = {
     {"import", "make a scene of images or videos with unknown cameras"},
+    {"check", "judge the footage of a scene before training"},
     {"enc", "train a scene and write it as a stream"},
     {"dec", "decode, render and play a stream"},
     {"info", "print the contents of a stream"},

@@ -6,7 +6,6 @@
 #define ADCGS_TRAIN_STATE_STATE_H
 
 #include "bits/bytes.h"
-#include "check/faults.h"
 #include "fmodel/pass.h"
 #include "fmodel/rdo_input.h"
 #include "fmodel/rigidity.h"
@@ -89,7 +88,6 @@ typedef struct adcgs_trainer {
     adcgs_image_store_progress loading; /* called for each loaded image, or NULL */
     void *loading_user;
     adcgs_thumbnail *thumbnails; /* [n_views] of loaded images, owned by the caller; NULL: not wanted */
-    adcgs_fault duplicates;      /* duplicated images, if they were searched */
     float *image, *grad;
     float *taken; /* recorded image of the current view */
     adcgs_train_stats stats;
