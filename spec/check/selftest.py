@@ -138,8 +138,8 @@ FAULTS = [
     Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEOM-001]]", "stands in"),
     Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEO-2]]", "not of the form"),
     Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEOM-998]]", "no test and no vector cites REQ-GEOM-998"),
-    Fault("S7", "tests/unit/test_geom.c", r"REQ-GEOM-002", "REQ-GEOM-" + "999", "test_geom.c: test_sorting cites REQ-GEOM-" + "999"),
-    Fault("S7", "tests/unit/test_geom.c", r"/\* REQ-GEOM-002 \*/\n", "", "out of date"),
+    Fault("S7", "tests/unit/codec/test_geom.c", r"REQ-GEOM-002", "REQ-GEOM-" + "999", "test_geom.c: test_sorting cites REQ-GEOM-" + "999"),
+    Fault("S7", "tests/unit/codec/test_geom.c", r"/\* REQ-GEOM-002 \*/\n", "", "out of date"),
     # S8: a digit of an example
     Fault("S8", "spec/clauses/annex-examples.adoc", r"`HEAD\.k` \| `(\d+)`", r"`HEAD.k` | `\g<1>7`", "annex-examples"),
     # S9: links, open ends, terms, abbreviations, form

@@ -12,7 +12,7 @@
  * Median error of correct poses on test scenes: 0.06 pixels, with few distant cameras 0.17. With pose errors of 1 pixel: 1. FITS
  * is calibrated on generated scenes with and without such errors and on four others (doc/log/stability.md, "Warning about errors
  * common to all poses"). The other constants are chosen by hand, not measured. They are checked on cameras around a ball, in a
- * room, and in a row (tests/unit/test_axes).
+ * room, and in a row (tests/unit/check/test_axes).
  */
 #define FITS 0.4      /* pixels: median error of poses that fit the images */
 #define FITS_WELL 0.2 /* pixels: median error below which no other reading is tried */

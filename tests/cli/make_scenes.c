@@ -4,7 +4,7 @@
  * scene: the folder's name, and the path of the scene below it ("." for the folder itself). Kinds with videos are left out if
  * this build cannot write videos.
  */
-#include "../unit/layout_kinds.h"
+#include "../unit/scene/layout_kinds.h"
 
 static int make(const char *where, const layout *l)
 {

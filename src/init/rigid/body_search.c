@@ -13,7 +13,7 @@
 
 /*
  * Origin, unless a line states one: chosen by hand, not measured one by one. Bodies as a whole are checked against true motion
- * (tests/unit/test_bodies) and on six scenes (doc/log/bodies.md, "Rigid bodies").
+ * (tests/unit/init/test_bodies) and on six scenes (doc/log/bodies.md, "Rigid bodies").
  */
 enum {
     SEED_LEAST = 60, /* points: minimum size of a seed and of a body */

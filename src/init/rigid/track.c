@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Origin: chosen by hand, not measured one by one; checked against the true motion of turning boxes (tests/unit/test_bodies). */
+/* Origin: chosen by hand, not measured one by one; checked against the true motion of turning boxes (test_bodies). */
 enum {
     FEW = 120,    /* points of a body for trying initial poses */
     MANY = 700,   /* points of a body for refining a pose */

@@ -5,8 +5,8 @@
  * every CPU level. Every intermediate number lies within the annex of bounds.
  */
 #include "base/cpu_detect.h"
-#include "unit/ranges.h"
-#include "unit/ranges_pixels.h"
+#include "ranges.h"
+#include "ranges_pixels.h"
 
 enum { SCENES = 600, SPLATS = 96, LAYERS = 640 };
 

@@ -10,7 +10,7 @@
 #include "base/strict.h"
 #include "splat/quaternion.h"
 #include "splat/splat_isa.h"
-#include "unit/ranges.h"
+#include "ranges.h"
 
 #include <float.h>
 #include <setjmp.h>
