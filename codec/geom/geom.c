@@ -270,8 +270,8 @@ static uint32_t gather(uint64_t code, int depth)
     return v;
 }
 
-adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, uint32_t *voxels, adcgs_memory *memory,
-                                    adcgs_error *error)
+adcgs_status adcgs_geom_decode(adcgs_range_dec *d, uint32_t n, int depth, uint32_t *voxels, adcgs_memory *memory,
+                               adcgs_error *error)
 {
     ADCGS_TRY(check_size(n, depth, ADCGS_ERR_DATA, error));
     walk *w = adcgs_alloc(memory, 1, sizeof *w, error);
@@ -291,13 +291,6 @@ adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, u
     clear(w);
     adcgs_free(memory, w);
     return status;
-}
-
-adcgs_status adcgs_geom_decode(const uint8_t *data, size_t bytes, uint32_t n, int depth, uint32_t *voxels, adcgs_error *error)
-{
-    adcgs_range_dec d;
-    adcgs_range_dec_init(&d, data, bytes);
-    return adcgs_geom_decode_from(&d, n, depth, voxels, NULL, error);
 }
 
 static adcgs_status list_codes(uint64_t *codes, const uint32_t *voxels, uint32_t n, int depth, adcgs_error *error)

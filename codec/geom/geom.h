@@ -17,16 +17,12 @@ uint64_t adcgs_morton(const uint32_t voxel[3]);
 int adcgs_morton_sort(uint32_t *voxels, size_t n, uint32_t *order, adcgs_error *error);
 
 /**
- * Decode n distinct voxels into voxels [n][3], Morton order, every coordinate < 2^depth.
- * The caller checks 1 <= n, depth 0..21, n <= 2^(3 depth); the function checks this, too.
+ * Decode n distinct voxels into voxels [n][3], Morton order, every coordinate < 2^depth, by a decoder that has been started.
+ * The caller checks 1 <= n, depth 0..21, n <= 2^(3 depth); the function checks this, too. It finishes the decoder; on success
+ * that holds its final state. Scratch memory, at most 128 bytes for each position plus a constant, comes from memory.
  */
-adcgs_status adcgs_geom_decode(const uint8_t *data, size_t bytes, uint32_t n, int depth, uint32_t *voxels, adcgs_error *error);
-/**
- * The same with a decoder that has been started. The function finishes it; on success it holds its final state. Scratch memory,
- * at most 128 bytes for each position plus a constant, comes from memory.
- */
-adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, uint32_t *voxels, adcgs_memory *memory,
-                                    adcgs_error *error);
+adcgs_status adcgs_geom_decode(adcgs_range_dec *d, uint32_t n, int depth, uint32_t *voxels, adcgs_memory *memory,
+                               adcgs_error *error);
 /** Append the coded positions to out. voxels: [n][3], Morton order, distinct (ADCGS_ERR_USAGE otherwise). */
 adcgs_status adcgs_geom_encode(adcgs_buffer *out, const uint32_t *voxels, uint32_t n, int depth, adcgs_error *error);
 

@@ -66,7 +66,6 @@ typedef struct adcgs_net {
     adcgs_layer layer[ADCGS_NET_LAYERS_MAX];
 } adcgs_net;
 
-void adcgs_net_clear(adcgs_net *net); /**< frees with NULL as memory; harmless on zeroed structs */
 uint32_t adcgs_net_weights(const adcgs_net *net);
 static inline uint32_t adcgs_net_inputs(const adcgs_net *net)
 {

@@ -152,11 +152,6 @@ adcgs_status adcgs_grow_end(adcgs_grow *g, adcgs_buffer *out, adcgs_error *error
     return status;
 }
 
-uint32_t adcgs_grow_segments(const adcgs_grow *g)
-{
-    return g->writer.n_segments;
-}
-
 /** Whether the stream so far fits a level. */
 static int fits(const adcgs_grow *g, const adcgs_level *l)
 {

@@ -28,7 +28,6 @@ adcgs_status adcgs_grow_segment(adcgs_grow *grow, const adcgs_model *before, adc
                                 adcgs_error *error);
 /** Append INDX and ENDC to out. At least one segment must have been written. */
 adcgs_status adcgs_grow_end(adcgs_grow *grow, adcgs_buffer *out, adcgs_error *error);
-uint32_t adcgs_grow_segments(const adcgs_grow *grow);
 
 /**
  * Append to out the payload of HEAD with the values known at the end: the number of segments, the duration, the anchors of the

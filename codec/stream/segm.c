@@ -266,7 +266,7 @@ static adcgs_status parse_positions(adcgs_parse *p, adcgs_model *model, adcgs_me
     if (model->n == 0)
         return bytes ? adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: %zu bytes of positions, but no new anchors", bytes) : ADCGS_OK;
     adcgs_range_dec_init(&d, data, bytes);
-    ADCGS_TRY(adcgs_geom_decode_from(&d, model->n, model->depth, model->pos, memory, p->error));
+    ADCGS_TRY(adcgs_geom_decode(&d, model->n, model->depth, model->pos, memory, p->error));
     adcgs_parse_trace_end(p, &d);
     return ADCGS_OK;
 }

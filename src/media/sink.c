@@ -115,7 +115,7 @@ static adcgs_status image_write(adcgs_sink *sink, const adcgs_frame *frame, int 
 
 static adcgs_status video_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
 {
-    return adcgs_video_write_frame_with(sink->video, frame, sink->extras.alpha, error);
+    return adcgs_video_write_frame(sink->video, frame, sink->extras.alpha, error);
 }
 
 static const kind kinds[] = {
@@ -224,8 +224,8 @@ static adcgs_status open_target(adcgs_sink *sink, adcgs_error *error)
     if (sink->what == &video_kind) {
         adcgs_video_style style = config->video ? *config->video : (adcgs_video_style){0};
         style.has_alpha = config->has_alpha;
-        return adcgs_video_write_open_as(&sink->video, config->target, config->width, config->height, config->frame_rate, &style,
-                                         error);
+        return adcgs_video_write_open(&sink->video, config->target, config->width, config->height, config->frame_rate, &style,
+                                      error);
     }
     if (!sink->what->is_stream)
         return ADCGS_OK;

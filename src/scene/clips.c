@@ -99,32 +99,18 @@ static void release(adcgs_clips *clips, clip *c)
     pthread_mutex_unlock(&clips->lock);
 }
 
-/** Reads the video's properties and a frame; info and image may be NULL. */
-static adcgs_status use(adcgs_clips *clips, const char *path, adcgs_video_info *info, int64_t frame, adcgs_image *image,
-                        adcgs_error *error)
+adcgs_status adcgs_clips_read(adcgs_clips *clips, const char *path, int64_t frame, adcgs_image *out, adcgs_error *error)
 {
     clip *c;
+    *out = (adcgs_image){0};
     ADCGS_TRY(acquire(clips, &c, path, error));
     pthread_mutex_lock(&c->lock);
     adcgs_status status = c->video ? ADCGS_OK : adcgs_video_open(&c->video, path, error);
-    if (status == ADCGS_OK && info)
-        *info = *adcgs_video_get_info(c->video);
-    if (status == ADCGS_OK && image)
-        status = adcgs_video_read(c->video, frame, image, error);
+    if (status == ADCGS_OK)
+        status = adcgs_video_read(c->video, frame, out, error);
     pthread_mutex_unlock(&c->lock);
     release(clips, c);
     return status;
-}
-
-adcgs_status adcgs_clips_read(adcgs_clips *clips, const char *path, int64_t frame, adcgs_image *out, adcgs_error *error)
-{
-    *out = (adcgs_image){0};
-    return use(clips, path, NULL, frame, out, error);
-}
-
-adcgs_status adcgs_clips_info(adcgs_clips *clips, const char *path, adcgs_video_info *out, adcgs_error *error)
-{
-    return use(clips, path, out, 0, NULL, error);
 }
 
 /* ---- Order ---- */

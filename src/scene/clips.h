@@ -19,7 +19,6 @@ void adcgs_clips_free(adcgs_clips **clips);
 
 /** Like adcgs_video_open() and adcgs_video_read(). Waits while all videos that may be open are in use. */
 adcgs_status adcgs_clips_read(adcgs_clips *clips, const char *path, int64_t frame, adcgs_image *out, adcgs_error *error);
-adcgs_status adcgs_clips_info(adcgs_clips *clips, const char *path, adcgs_video_info *out, adcgs_error *error);
 
 /** Views in runs. A thread loads the views of a run one after another: order[begin[i]] up to order[begin[i + 1]]. */
 typedef struct adcgs_view_runs {

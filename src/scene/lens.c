@@ -218,8 +218,3 @@ int adcgs_lens_invert(const adcgs_lens *lens, double fold, double u, double v, d
             break;
     return miss(&b, target) <= tolerance && xy[0] * xy[0] + xy[1] * xy[1] < fold;
 }
-
-int adcgs_lens_unproject(const adcgs_lens *lens, double u, double v, double xy[2])
-{
-    return adcgs_lens_invert(lens, adcgs_lens_fold(lens), u, v, xy);
-}

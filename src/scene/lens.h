@@ -28,8 +28,6 @@ typedef struct adcgs_lens {
 
 /** Projects a direction. The result is meaningless beyond the model's first fold. */
 void adcgs_lens_project(const adcgs_lens *lens, double x, double y, double uv[2]);
-/** Finds the direction seen at a pixel. Returns 0 if the model has no inverse there. */
-int adcgs_lens_unproject(const adcgs_lens *lens, double u, double v, double xy[2]);
 /**
  * Derives the pinhole camera for a lens: its focal lengths, no skew, and the largest rectangle of pixels that the image covers
  * wholly. The rectangle is found on a raster of at most 128 cells along the longer side, then grown until no side can move.

@@ -14,7 +14,7 @@
 double adcgs_lens_fold(const adcgs_lens *lens);
 /** Like adcgs_lens_project(); returns 0 if the model is folded there. */
 int adcgs_lens_see(const adcgs_lens *lens, double fold, double x, double y, double uv[2]);
-/** Like adcgs_lens_unproject(), with a known fold. */
+/** Finds the direction seen at a pixel. Returns 0 if the model has no inverse there. fold: of adcgs_lens_fold(). */
 int adcgs_lens_invert(const adcgs_lens *lens, double fold, double u, double v, double xy[2]);
 
 #endif

@@ -70,12 +70,6 @@ static int count_pictures(const adcgs_scenes_entry *scene)
     return n;
 }
 
-int adcgs_scenes_count(const char *name)
-{
-    const adcgs_scenes_entry *const scene = adcgs_scenes_entry_find(name);
-    return scene ? count_pictures(scene) : 0;
-}
-
 /* Returns view i of a split. Validation views of one fixed camera and test views from outside the arc replace the scene's own. */
 static adcgs_scenes_view view_at(const writer *w, int split, int i)
 {

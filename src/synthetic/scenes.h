@@ -32,9 +32,6 @@ typedef struct adcgs_scenes_options {
 const char *adcgs_scenes_name(int i);
 const char *adcgs_scenes_about(int i);
 
-/** Number of images of the three splits together, 0 for an unknown scene. */
-int adcgs_scenes_count(const char *name);
-
 /** Called after each image. */
 typedef void (*adcgs_scenes_progress_fn)(void *user, int done, int total);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Kernels of networks, entropy coding and training. */
 #include "bench_parts.h"
+#include "unit/decode_positions.h"
 
 #include "bits/range.h"
 #include "geom/geom.h"
@@ -172,10 +173,10 @@ static void decode_bits(void *arg)
     bench_check(adcgs_range_dec_finish(&d, NULL), NULL);
 }
 
-static void decode_positions(void *arg)
+static void decode_some_positions(void *arg)
 {
     coded *c = arg;
-    bench_check(adcgs_geom_decode(c->positions.data, c->positions.size, POSITIONS, DEPTH, c->decoded, NULL), NULL);
+    bench_check(decode_positions(c->positions.data, c->positions.size, POSITIONS, DEPTH, c->decoded, NULL), NULL);
 }
 
 /** Symbols of a peaked distribution, bits of which one in five is set, positions on a sphere. */
@@ -221,7 +222,7 @@ static void coding(const bench *b)
     make_coded(&c);
     const bench_item items[] = {{"symbols", decode_symbols, &c, SYMBOLS, "symbol", 0},
                                 {"adaptive bits", decode_bits, &c, SYMBOLS, "bit", 0},
-                                {"positions", decode_positions, &c, POSITIONS, "position", 0}};
+                                {"positions", decode_some_positions, &c, POSITIONS, "position", 0}};
     bench_group(b, &(bench_place){.group = "decode", .threads = 1}, items, ADCGS_COUNTOF(items), 0);
     adcgs_buffer_clear(&c.symbols);
     adcgs_buffer_clear(&c.bits);

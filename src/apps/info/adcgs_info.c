@@ -207,7 +207,7 @@ static adcgs_status write_points(const adcgs_info_report *r, const char *path, a
     adcgs_points points;
     double offset[3];
     ADCGS_TRY(adcgs_info_points(&points, offset, &r->stream, path, error));
-    const adcgs_status status = adcgs_points_write_from(&points, offset, path, error);
+    const adcgs_status status = adcgs_points_write(&points, offset, path, error);
     if (status == ADCGS_OK && adcgs_offset_is(offset))
         fprintf(stderr,
                 "adcgs-info: %s: the scene is too far from the origin for binary32: %.17g %.17g %.17g was subtracted from "

@@ -58,10 +58,11 @@ adcgs_status adcgs_draco_parse(adcgs_points *out, const uint8_t *data, size_t by
  */
 adcgs_status adcgs_draco_write(const adcgs_points *points, const char *path, adcgs_error *error);
 
-/** Write PLY or Draco, by extension; ADCGS_ERR_USAGE for another extension. */
-adcgs_status adcgs_points_write(const adcgs_points *points, const char *path, adcgs_error *error);
-/** The same for points relative to an offset (media/splats/offset.h): PLY stores it in a comment, Draco cannot store it. */
-adcgs_status adcgs_points_write_from(const adcgs_points *points, const double offset[3], const char *path, adcgs_error *error);
+/**
+ * Write PLY or Draco, by extension; ADCGS_ERR_USAGE for another extension. Points are relative to an offset
+ * (media/splats/offset.h): PLY stores it in a comment, Draco cannot store it.
+ */
+adcgs_status adcgs_points_write(const adcgs_points *points, const double offset[3], const char *path, adcgs_error *error);
 
 #ifdef __cplusplus
 }

@@ -49,12 +49,7 @@ adcgs_status adcgs_draco_write(const adcgs_points *points, const char *path, adc
     return status;
 }
 
-adcgs_status adcgs_points_write(const adcgs_points *points, const char *path, adcgs_error *error)
-{
-    return adcgs_points_write_from(points, (const double[3]){0.0, 0.0, 0.0}, path, error);
-}
-
-adcgs_status adcgs_points_write_from(const adcgs_points *points, const double offset[3], const char *path, adcgs_error *error)
+adcgs_status adcgs_points_write(const adcgs_points *points, const double offset[3], const char *path, adcgs_error *error)
 {
     const char *const extension = adcgs_extension(path);
     if (!strcasecmp(extension, "ply"))

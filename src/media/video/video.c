@@ -116,13 +116,7 @@ static adcgs_status begin(adcgs_video_writer *w, int width, int height, double f
 }
 
 adcgs_status adcgs_video_write_open(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
-                                    adcgs_error *error)
-{
-    return adcgs_video_write_open_as(out, path, width, height, frame_rate, &(const adcgs_video_style){0}, error);
-}
-
-adcgs_status adcgs_video_write_open_as(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
-                                       const adcgs_video_style *style, adcgs_error *error)
+                                    const adcgs_video_style *style, adcgs_error *error)
 {
     const adcgs_ffmpeg *ffmpeg;
     *out = NULL;
@@ -146,13 +140,7 @@ void adcgs_video_write_size(const adcgs_video_writer *writer, int *width, int *h
     *height = writer->stored[1];
 }
 
-adcgs_status adcgs_video_write_frame(adcgs_video_writer *writer, const adcgs_frame *frame, adcgs_error *error)
-{
-    return adcgs_video_write_frame_with(writer, frame, NULL, error);
-}
-
-adcgs_status adcgs_video_write_frame_with(adcgs_video_writer *writer, const adcgs_frame *frame, const float *alpha,
-                                          adcgs_error *error)
+adcgs_status adcgs_video_write_frame(adcgs_video_writer *writer, const adcgs_frame *frame, const float *alpha, adcgs_error *error)
 {
     return writer->ffmpeg->add(writer->encoder, frame, alpha, error);
 }

@@ -58,21 +58,19 @@ typedef struct adcgs_video_style {
     int has_alpha;      /**< frames have alpha, which the codec must support */
 } adcgs_video_style;
 
-/** Start a video. Container by extension; BT.709 of limited range, or RGB, tagged accordingly. */
+/**
+ * Start a video. Container by extension; BT.709 of limited range, or RGB, tagged accordingly. style: {0} for the defaults; its
+ * strings are not needed after the call.
+ */
 adcgs_status adcgs_video_write_open(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
-                                    adcgs_error *error);
-/** As adcgs_video_write_open(), in a style, whose strings are not needed after the call. */
-adcgs_status adcgs_video_write_open_as(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
-                                       const adcgs_video_style *style, adcgs_error *error);
+                                    const adcgs_video_style *style, adcgs_error *error);
 /** The size of the frames in the file: that of the input, or one row or column more if the codec needs even sizes. */
 void adcgs_video_write_size(const adcgs_video_writer *writer, int *width, int *height);
-adcgs_status adcgs_video_write_frame(adcgs_video_writer *writer, const adcgs_frame *frame, adcgs_error *error);
 /**
- * Add a frame with alpha, [height][width], by which its colours are premultiplied; the file stores straight colours. NULL:
- * opaque.
+ * Add a frame. alpha: [height][width], by which its colours are premultiplied; the file stores straight colours. NULL: opaque.
  */
-adcgs_status adcgs_video_write_frame_with(adcgs_video_writer *writer, const adcgs_frame *frame, const float *alpha,
-                                          adcgs_error *error);
+adcgs_status adcgs_video_write_frame(adcgs_video_writer *writer, const adcgs_frame *frame, const float *alpha,
+                                     adcgs_error *error);
 /** Complete the file. On failure, and after adcgs_video_write_abort(), no file is left. */
 adcgs_status adcgs_video_write_close(adcgs_video_writer **writer, adcgs_error *error);
 void adcgs_video_write_abort(adcgs_video_writer **writer);

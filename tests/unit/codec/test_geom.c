@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Positions: sorting, exact round trips from one voxel to full cubes, and hostile data. */
+#include "decode_positions.h"
+
 #include "geom/geom.h"
 #include "geom/logistic_data.h"
 
@@ -43,7 +45,7 @@ static double check_cloud(const uint32_t *voxels, uint32_t n, int depth)
     if (adcgs_geom_encode(&b, voxels, n, depth, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     uint32_t *back = make_voxels(n);
-    if (adcgs_geom_decode(b.data, b.size, n, depth, back, &error) != ADCGS_OK)
+    if (decode_positions(b.data, b.size, n, depth, back, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     assert_memory_equal(back, voxels, (size_t)n * 3 * sizeof *voxels);
     const double bits = 8.0 * (double)b.size / n;
@@ -220,18 +222,18 @@ static void test_wrong_use(void **state)
     assert_int_equal(adcgs_geom_encode(&b, outside, 1, 22, NULL), ADCGS_ERR_USAGE);
     assert_int_equal(b.size, 0);
     uint32_t out[30];
-    assert_int_equal(adcgs_geom_decode(NULL, 0, 9, 1, out, NULL), ADCGS_ERR_DATA);
-    assert_int_equal(adcgs_geom_decode(NULL, 0, 2, 0, out, NULL), ADCGS_ERR_DATA);
-    assert_int_equal(adcgs_geom_decode(NULL, 0, 1, -1, out, NULL), ADCGS_ERR_DATA);
-    assert_int_equal(adcgs_geom_decode(NULL, 0, 0, 5, out, NULL), ADCGS_ERR_DATA);
-    assert_int_equal(adcgs_geom_decode(NULL, 0, 8, 1, out, NULL), ADCGS_OK);
+    assert_int_equal(decode_positions(NULL, 0, 9, 1, out, NULL), ADCGS_ERR_DATA);
+    assert_int_equal(decode_positions(NULL, 0, 2, 0, out, NULL), ADCGS_ERR_DATA);
+    assert_int_equal(decode_positions(NULL, 0, 1, -1, out, NULL), ADCGS_ERR_DATA);
+    assert_int_equal(decode_positions(NULL, 0, 0, 5, out, NULL), ADCGS_ERR_DATA);
+    assert_int_equal(decode_positions(NULL, 0, 8, 1, out, NULL), ADCGS_OK);
 }
 
 /* For any bytes the decoder returns a status. If it is OK, the voxels are distinct, in order and inside the cube. */
 static void try_bytes(const uint8_t *data, size_t bytes, uint32_t n, int depth)
 {
     uint32_t *voxels = make_voxels(n);
-    if (adcgs_geom_decode(data, bytes, n, depth, voxels, NULL) == ADCGS_OK)
+    if (decode_positions(data, bytes, n, depth, voxels, NULL) == ADCGS_OK)
         for (uint32_t i = 0; i < n; i++) {
             assert_true((voxels[3 * i] | voxels[3 * i + 1] | voxels[3 * i + 2]) >> depth == 0);
             assert_true(i == 0 || adcgs_morton(voxels + 3 * i) > adcgs_morton(voxels + 3 * (i - 1)));

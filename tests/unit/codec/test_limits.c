@@ -3,6 +3,7 @@
  * The cost that a stream can cause in a decoder: streams of a few hundred bytes that use all of a level's limits are decoded
  * within their memory and time, and one unit more of anything is refused before any allocation for it.
  */
+#include "free_net.h"
 #include "zero_streams.h"
 #include "stream_edit.h"
 
@@ -261,7 +262,7 @@ static cost decode_tiny_networks(uint32_t networks)
     adcgs_write_bytes(&more, bytes.data + end.at, bytes.size - end.at);
     adcgs_repair_stream(more.data, more.size, 0);
     const cost spent = decode(more.data, more.size);
-    adcgs_net_clear(&net);
+    free_net(&net);
     adcgs_buffer_clear(&more);
     adcgs_buffer_clear(&bytes);
     return spent;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Value tables and values; E24 networks against a 64-bit reference on every kernel. */
+#include "free_net.h"
 #include "net_numbers.h"
 #include "second_sources.h"
 
@@ -258,7 +259,7 @@ static void test_e24_equals_reference(void **state)
             if (trial % 2 || sizes[i][layers[i]] % 2)
                 make_steps(&net);
             check_net(&net, &seed);
-            adcgs_net_clear(&net);
+            free_net(&net);
         }
 }
 
@@ -313,7 +314,7 @@ static void test_e24_row_bound(void **state)
     net.layer[0].w.mode = 0;
     net.in_shift = 9;
     assert_int_equal(load_net(&net), ADCGS_ERR_DATA);
-    adcgs_net_clear(&net);
+    free_net(&net);
 }
 
 /* All rows of the last layer of step indices use the layer's shift. */
@@ -337,7 +338,7 @@ static void test_e24_steps_bound(void **state)
         net.layer[0].b.m[row] = 0;
     }
     check_net(&net, &seed);
-    adcgs_net_clear(&net);
+    free_net(&net);
 }
 
 static void test_e24_known_answer(void **state)

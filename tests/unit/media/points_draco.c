@@ -88,7 +88,7 @@ static void test_draco_writing(void **state)
     expect_draco_round_trip(&points);
     const size_t n = load_file("w.drc", first, sizeof first);
     assert_true(n > 100 && n < sizeof first);
-    assert_int_equal(adcgs_points_write(&points, in("again.DRC"), &error), ADCGS_OK);
+    assert_int_equal(adcgs_points_write(&points, (const double[3]){0}, in("again.DRC"), &error), ADCGS_OK);
     assert_int_equal(load_file("again.DRC", second, sizeof second), n);
     assert_memory_equal(first, second, n);
     memset(points.colour, 128, points.n * sizeof *points.colour);
@@ -100,7 +100,8 @@ static void test_draco_writing(void **state)
     expect_error(adcgs_draco_write(&points, in("none.drc"), &error), ADCGS_ERR_UNSUPPORTED, "none.drc", "at least one point");
     points.n = 1;
     expect_error(adcgs_draco_write(&points, in("no/w.drc"), &error), ADCGS_ERR_IO, "no/w.drc", "No such");
-    expect_error(adcgs_points_write(&points, in("w.xyz"), &error), ADCGS_ERR_USAGE, "w.xyz", ".ply or .drc");
+    expect_error(adcgs_points_write(&points, (const double[3]){0}, in("w.xyz"), &error), ADCGS_ERR_USAGE, "w.xyz",
+                 ".ply or .drc");
     assert_true(access(in("none.drc"), F_OK) != 0 && access(in("w.xyz"), F_OK) != 0);
     adcgs_points_free(&points);
 }

@@ -47,10 +47,10 @@ static adcgs_frame paint(int number, int has_alpha)
 static adcgs_status write_clip(const char *name, const adcgs_video_style *style)
 {
     adcgs_video_writer *w;
-    ADCGS_TRY(adcgs_video_write_open_as(&w, in(name), W, H, 25, style, &error));
+    ADCGS_TRY(adcgs_video_write_open(&w, in(name), W, H, 25, style, &error));
     for (int i = 0; i < N; i++) {
         const adcgs_frame frame = paint(i, style->has_alpha);
-        expect_good(adcgs_video_write_frame_with(w, &frame, style->has_alpha ? coverage : NULL, &error));
+        expect_good(adcgs_video_write_frame(w, &frame, style->has_alpha ? coverage : NULL, &error));
     }
     return adcgs_video_write_close(&w, &error);
 }
@@ -226,8 +226,8 @@ static void test_refused(void **state)
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(rows); i++) {
         adcgs_video_writer *w;
-        expect_error(adcgs_video_write_open_as(&w, in(rows[i].name), W, H, 25, &rows[i].style, &error), rows[i].status,
-                     rows[i].name, rows[i].text);
+        expect_error(adcgs_video_write_open(&w, in(rows[i].name), W, H, 25, &rows[i].style, &error), rows[i].status, rows[i].name,
+                     rows[i].text);
         assert_null(w);
     }
 }

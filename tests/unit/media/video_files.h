@@ -34,10 +34,10 @@ static inline adcgs_frame paint(int width, int height, int number)
 static inline void write_clip(const char *name, int width, int height, int frames, double rate)
 {
     adcgs_video_writer *w;
-    expect_good(adcgs_video_write_open(&w, in(name), width, height, rate, &error));
+    expect_good(adcgs_video_write_open(&w, in(name), width, height, rate, &(const adcgs_video_style){0}, &error));
     for (int i = 0; i < frames; i++) {
         const adcgs_frame frame = paint(width, height, i);
-        expect_good(adcgs_video_write_frame(w, &frame, &error));
+        expect_good(adcgs_video_write_frame(w, &frame, NULL, &error));
     }
     expect_good(adcgs_video_write_close(&w, &error));
     assert_null(w);

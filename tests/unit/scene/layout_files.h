@@ -85,11 +85,12 @@ static inline int put_video(const char *name, int number, int frames, int width,
     float *rgb = malloc((size_t)(3 * width * height) * sizeof *rgb);
     const adcgs_frame frame = {width, height, rgb};
     assert_non_null(rgb);
-    const adcgs_status status = adcgs_video_write_open(&writer, in(name), width, height, 25, &error);
+    const adcgs_status status =
+        adcgs_video_write_open(&writer, in(name), width, height, 25, &(const adcgs_video_style){0}, &error);
     for (int f = 0; status == ADCGS_OK && f < frames; f++) {
         for (int i = 0; i < 3 * width * height; i++)
             rgb[i] = (float)((i / 24 + 16 * f + 31 * number) % 200) / 255.0f;
-        assert_int_equal(adcgs_video_write_frame(writer, &frame, &error), ADCGS_OK);
+        assert_int_equal(adcgs_video_write_frame(writer, &frame, NULL, &error), ADCGS_OK);
     }
     free(rgb);
     if (status == ADCGS_ERR_UNSUPPORTED)

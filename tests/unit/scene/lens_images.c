@@ -212,7 +212,7 @@ static void check_camera(const adcgs_scene *scene, const adcgs_camera *pinhole, 
             continue; /* some points are so far off the axis that the model folds before it reaches them */
         (*inside)++;
         *bent = fmax(*bent, hypot(0.5 * uv[0] - seen[0], 0.5 * uv[1] - seen[1]));
-        assert_true(adcgs_lens_unproject(&lens, uv[0], uv[1], xy));
+        assert_true(unproject(&lens, uv[0], uv[1], xy));
         assert_true(fabs(0.5 * (lens.fx * xy[0] + lens.cx) - seen[0]) < 1e-3);
         assert_true(fabs(0.5 * (lens.fy * xy[1] + lens.cy) - seen[1]) < 1e-3);
     }

@@ -26,6 +26,11 @@
 
 static const adcgs_lens lenses[] = {BARREL, CUSHION, CROOKED, RATIONAL, EIGHTH, SHEARED, ASIDE, FISHEYE};
 
+static inline int unproject(const adcgs_lens *lens, double u, double v, double xy[2])
+{
+    return adcgs_lens_invert(lens, adcgs_lens_fold(lens), u, v, xy);
+}
+
 static inline void expect_good(adcgs_status status)
 {
     if (status != ADCGS_OK)

@@ -36,7 +36,7 @@ static void test_inverse(void **state)
             for (int i = 0; i <= 40; i++) {
                 const double u = lenses[n].width * i / 40.0, v = lenses[n].height * j / 40.0;
                 double xy[2], uv[2];
-                assert_true(adcgs_lens_unproject(&lenses[n], u, v, xy));
+                assert_true(unproject(&lenses[n], u, v, xy));
                 adcgs_lens_project(&lenses[n], xy[0], xy[1], uv);
                 assert_true(fabs(uv[0] - u) < 1e-8 && fabs(uv[1] - v) < 1e-8);
                 assert_true(xy[0] > before);
@@ -54,9 +54,9 @@ static void test_fold(void **state)
     double xy[2];
     for (int turn = 0; turn < 8; turn++) {
         const double c = cos(turn), s = sin(turn);
-        assert_true(adcgs_lens_unproject(&fold, 37 + c * (most - 1e-3), 5 + s * (most - 1e-3), xy));
+        assert_true(unproject(&fold, 37 + c * (most - 1e-3), 5 + s * (most - 1e-3), xy));
         assert_true(hypot(xy[0], xy[1]) < 1.0 / sqrt(3.0) && hypot(xy[0], xy[1]) > 0.57);
-        assert_false(adcgs_lens_unproject(&fold, 37 + c * (most + 1e-3), 5 + s * (most + 1e-3), xy));
+        assert_false(unproject(&fold, 37 + c * (most + 1e-3), 5 + s * (most + 1e-3), xy));
     }
     expect_good(adcgs_lens_pinhole(&fold, &camera, "x", &error)); /* corners at 37.3 pixels */
     assert_true(camera.width > 74);
@@ -66,11 +66,11 @@ static void test_fold(void **state)
     /* The model would grow again further out. The first fold counts. */
     fold.k[1] = 10.0;
     fold.k[0] = -5.0;
-    assert_true(adcgs_lens_unproject(&fold, 41, 5, xy) && xy[0] < 0.05);
-    assert_false(adcgs_lens_unproject(&fold, 40 + 40, 5, xy));
+    assert_true(unproject(&fold, 41, 5, xy) && xy[0] < 0.05);
+    assert_false(unproject(&fold, 40 + 40, 5, xy));
     /* A pole: 1/(1 - r^2) reaches every place in the image before r is 1. */
     const adcgs_lens pole = {.width = 80, .height = 10, .fx = 10, .fy = 10, .cx = 40, .cy = 5, .k = {0, 0, 0, -1.0}};
-    assert_true(adcgs_lens_unproject(&pole, 80, 5, xy) && xy[0] < 1.0);
+    assert_true(unproject(&pole, 80, 5, xy) && xy[0] < 1.0);
     /* Tangential terms fold too. */
     adcgs_lens bent = {.width = 80, .height = 80, .fx = 40, .fy = 40, .cx = 40, .cy = 40, .p = {0.3, 0}};
     expect_error(adcgs_lens_pinhole(&bent, &camera, "x", &error), ADCGS_ERR_DATA, "x: ", "folds inside");
@@ -85,13 +85,13 @@ static void test_angles(void **state)
         for (int tenth = 0; tenth < 894; tenth++) {
             const double angle = tenth * 0.1 * M_PI / 180.0, x = tan(angle) * cos(turn), y = tan(angle) * sin(turn);
             reference(&circle, x, y, uv);
-            assert_true(adcgs_lens_unproject(&circle, uv[0], uv[1], xy));
+            assert_true(unproject(&circle, uv[0], uv[1], xy));
             assert_true(fabs(atan(hypot(xy[0], xy[1])) - angle) < 1e-10);
             assert_true(hypot(xy[0] - x, xy[1] - y) < 1e-9 * (1.0 + x * x + y * y));
         }
     reference(&circle, 1e9, 0, uv);
-    assert_false(adcgs_lens_unproject(&circle, uv[0], uv[1], xy)); /* 90 degrees */
-    assert_false(adcgs_lens_unproject(&circle, uv[0] + 20, uv[1], xy));
+    assert_false(unproject(&circle, uv[0], uv[1], xy)); /* 90 degrees */
+    assert_false(unproject(&circle, uv[0] + 20, uv[1], xy));
     adcgs_lens_project(&circle, 0.0, 0.0, uv);
     assert_true(uv[0] == circle.cx && uv[1] == circle.cy);
 }
@@ -124,7 +124,7 @@ static void test_nonsense(void **state)
             adcgs_camera camera = {0};
             memcpy((char *)&lens + field / 2 * sizeof(double), &values[i], sizeof(double));
             error = (adcgs_error){0};
-            (void)adcgs_lens_unproject(&lens, 3, 4, xy);
+            (void)unproject(&lens, 3, 4, xy);
             if (adcgs_lens_pinhole(&lens, &camera, "x", &error) == ADCGS_OK)
                 assert_true(camera.width >= 1 && camera.width <= ADCGS_IMAGE_MAX && camera.height >= 1 &&
                             camera.height <= ADCGS_IMAGE_MAX);
@@ -143,7 +143,7 @@ static int is_shown(const adcgs_lens *lens, const adcgs_camera *c, double u, dou
     reference(lens, x, y, uv);
     if (!(uv[0] >= -1e-5 && uv[1] >= -1e-5 && uv[0] <= lens->width + 1e-5 && uv[1] <= lens->height + 1e-5))
         return 0;
-    return adcgs_lens_unproject(lens, uv[0], uv[1], back) && hypot(back[0] - x, back[1] - y) < 1e-7; /* not beyond a fold */
+    return unproject(lens, uv[0], uv[1], back) && hypot(back[0] - x, back[1] - y) < 1e-7; /* not beyond a fold */
 }
 
 /** All corners of pixels are shown, and no side could be extended by a whole row or column. */
