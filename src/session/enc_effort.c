@@ -4,6 +4,8 @@
 
 #include "session/enc_effort.h"
 
+#include "train/resolve.h"
+
 #include <math.h>
 
 /* Origin: chosen by hand, not measured. */
@@ -19,8 +21,7 @@ void adcgs_enc_effort_init(adcgs_enc_effort *e, adcgs_enc_job *job)
     *e = (adcgs_enc_effort){.delay = job->o->has_delay ? job->o->delay : 0, .most = job->config.iterations};
     if (!(e->delay > 0))
         return;
-    job->config.matching_frames = (uint8_t)ADCGS_MIN(job->config.matching_frames, FRAMES);
-    job->config.params.bodies = 0;
+    adcgs_resolve_delay(&job->config, FRAMES);
 }
 
 static void say(adcgs_enc_effort *e, const adcgs_enc_job *job, uint32_t number, double left)
@@ -36,13 +37,13 @@ void adcgs_enc_effort_choose(adcgs_enc_effort *e, adcgs_enc_job *job, double cam
 {
     const uint32_t least = ADCGS_MIN(LEAST, e->most);
     const double left = came + e->delay - seconds - adcgs_seconds();
-    job->config.iterations = e->most;
-    job->config.time_limit = 0;
     if (!(e->delay > 0))
         return;
     const double n = e->rate > 0 ? e->rate * (SAFETY * left - e->overhead) : left > BLIND ? e->most : 0;
-    job->config.iterations = n > least ? (uint32_t)fmin(n, e->most) : least;
-    job->config.time_limit = n > least ? GUARD * left - e->overhead : 0;
+    if (n > least)
+        adcgs_resolve_effort(&job->config, (uint32_t)fmin(n, e->most), GUARD * left - e->overhead);
+    else
+        adcgs_resolve_effort(&job->config, least, 0);
     say(e, job, number, left);
 }
 

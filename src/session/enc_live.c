@@ -18,7 +18,7 @@
 #include "system/growing.h"
 #include "system/interrupt.h"
 #include "system/pipe.h"
-#include "train/settings.h"
+#include "train/resolve.h"
 
 #include <math.h>
 #include <signal.h>
@@ -29,7 +29,6 @@
 typedef struct live_run {
     adcgs_enc_context *w;
     adcgs_enc_job *job;
-    adcgs_train_config asked; /* the configuration before it is fitted to the input */
     adcgs_live *live;
     adcgs_live_segment segment;
     adcgs_encode_live stream;
@@ -146,7 +145,7 @@ static adcgs_status learn_segment(live_run *r, adcgs_error *error)
     const adcgs_model *before = r->is_open ? &r->stream.model : NULL;
     const double started = adcgs_seconds();
     if (r->is_open) /* keys have the parameters of the first segment */
-        r->job->config.params.time_rows = r->stream.front.params.time_rows;
+        adcgs_resolve_key(&r->job->config, r->stream.front.params.time_rows);
     w->segment = r->past.n + r->sum.n;
     w->next_log = 0;
     w->first = w->last = (adcgs_train_report){.iteration = 0};
@@ -206,9 +205,10 @@ static adcgs_status go_on(live_run *r, adcgs_error *error)
 /** Fixes all settings, now that the size of the images is known. */
 static adcgs_status settle(live_run *r, adcgs_error *error)
 {
+    adcgs_train_config sized = *r->job->requested;
     adcgs_enc_reduce_large(r->job, r->segment.scene, &r->w->progress);
-    r->asked.scale = r->job->config.scale;
-    return adcgs_train_changes(&r->asked, &r->w->changes, error);
+    adcgs_resolve_size(&sized, r->job->config.scale);
+    return adcgs_train_changes(&sized, &r->w->changes, error);
 }
 
 static adcgs_status learn_all(live_run *r, adcgs_error *error)
@@ -278,8 +278,7 @@ adcgs_status adcgs_enc_live(adcgs_enc_context *w, adcgs_enc_job *job, adcgs_erro
         return adcgs_fail(error, ADCGS_ERR_USAGE,
                           "--live: exposure_step_compensation needs all images before training: leave it out");
     w->is_live = 1;
-    r.asked = job->config;
-    job->config.own_anchors = 1; /* HEAD states the maximum of anchors before most images arrive */
+    adcgs_resolve_live(&job->config);
     adcgs_buffer_init(&r.bytes);
     adcgs_enc_effort_init(&r.effort, job);
     const adcgs_status status = run(&r, error);

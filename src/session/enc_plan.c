@@ -13,7 +13,7 @@
 #include "system/claim.h"
 #include "system/json.h"
 #include "train/anchor_plan.h"
-#include "train/settings.h"
+#include "train/resolve.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -118,9 +118,9 @@ static adcgs_status fill(adcgs_plan *p, adcgs_enc_job *job, const adcgs_scene_op
     memcpy(p->background, job->scene->background, sizeof p->background);
     p->cpu = job->cpu;
     *c = job->whole; /* the configuration before cutting */
-    c->has_details = !c->own_anchors && c->detail_anchors > 0;
-    if (c->has_details)
-        ADCGS_TRY(adcgs_plan_details(job->scene, c->scale, &c->details, error));
+    p->has_details = adcgs_resolve_wants_details(c);
+    if (p->has_details)
+        ADCGS_TRY(adcgs_plan_details(job->scene, c->scale, &p->details, error));
     p->segments = adcgs_alloc(NULL, job->cuts.n, sizeof *p->segments, error);
     if (!p->segments)
         return adcgs_alloc_status(error);
@@ -199,7 +199,8 @@ static adcgs_status take_settings(adcgs_enc_context *w, adcgs_enc_job *job, cons
                           "those",
                           job->o->plan, adcgs_cpu_name(p->cpu), adcgs_cpu_name(adcgs_cpu_best()));
     job->plan = p;
-    job->config = p->config;
+    job->requested = &p->config;
+    job->config = *job->requested;
     if (p->config.bf16)
         ADCGS_TRY(adcgs_bf16_check(job->cpu, error));
     w->changes.size = 0;

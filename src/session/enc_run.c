@@ -13,7 +13,7 @@
 #include "system/interrupt.h"
 #include "system/json.h"
 #include "system/text.h"
-#include "train/settings.h"
+#include "train/resolve.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -321,12 +321,14 @@ adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, con
                             adcgs_s(scene->n_views[ADCGS_SPLIT_TRAIN]));
     const int is_one_of_many = job->ranks && job->ranks->rank;             /* the first rank reports for all */
     const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* live footage is not judged */
-    adcgs_train_config config = job->config;
-    config.judges_poses = tells && !w->diagnosed; /* by the first part of a scene */
-    ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &config, before, job->cpu, job->pool, error));
+    adcgs_trainer_input input = {.before = before,
+                                 .details = job->plan && job->plan->has_details ? &job->plan->details : NULL,
+                                 .judges_poses = tells && !w->diagnosed}; /* by the first part of a scene */
+    ADCGS_TRY(adcgs_trainer_create_from(&w->t, scene, &job->config, &input, job->cpu, job->pool, error));
     if (!before && otherwise && !adcgs_params_equal(&w->t->f->params, &otherwise->params)) {
         adcgs_trainer_free(&w->t);
-        ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &config, otherwise, job->cpu, job->pool, error));
+        input.before = otherwise;
+        ADCGS_TRY(adcgs_trainer_create_from(&w->t, scene, &job->config, &input, job->cpu, job->pool, error));
     }
     if (tells) {
         w->t->thumbnails = w->thumbnails = adcgs_alloc(NULL, w->t->n_views, sizeof *w->thumbnails, error);
@@ -354,14 +356,13 @@ adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, con
 
 void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_scene *scene, adcgs_progress *progress)
 {
-    const int asked = job->o->has_scale || adcgs_setting_in_list(job->o->set, "scale");
     int side = 0;
     for (uint32_t i = 0; i < scene->n_views[ADCGS_SPLIT_TRAIN]; i++) {
         const adcgs_camera *const c = &scene->views[ADCGS_SPLIT_TRAIN][i].camera;
         side = ADCGS_MAX(side, ADCGS_MAX(c->width, c->height));
     }
-    if (!asked && side > ADCGS_SIDE_MOST) {
-        job->config.scale = (side + ADCGS_SIDE_MOST - 1) / ADCGS_SIDE_MOST;
+    if (!adcgs_setting_is_given(job->requested, "scale") && side > ADCGS_SIDE_MOST) {
+        adcgs_resolve_size(&job->config, (side + ADCGS_SIDE_MOST - 1) / ADCGS_SIDE_MOST);
         if (progress)
             adcgs_progress_clear(progress);
         adcgs_cli_note(job->cli, "%s: images of %d pixels are reduced to 1/%d of that; --scale 1 keeps their size",

@@ -73,12 +73,13 @@ typedef struct adcgs_enc_job {
     const adcgs_cli *cli;
     const adcgs_enc_options *o;
     adcgs_scene *scene;
-    adcgs_cuts cuts;          /* n 0: the scene is not cut */
-    uint8_t *follows;         /* [cuts.n] 1: the part is trained from the previous one */
-    const adcgs_ranks *ranks; /* that train the segments together; NULL: this process alone */
-    const adcgs_plan *plan;   /* plan of the training; NULL: none */
-    adcgs_train_config config;
-    adcgs_train_config whole; /* of the scene as one segment, if it is cut */
+    adcgs_cuts cuts;                     /* n 0: the scene is not cut */
+    uint8_t *follows;                    /* [cuts.n] 1: the part is trained from the previous one */
+    const adcgs_ranks *ranks;            /* that train the segments together; NULL: this process alone */
+    const adcgs_plan *plan;              /* plan of the training; NULL: none */
+    const adcgs_train_config *requested; /* by the command line or the plan */
+    adcgs_train_config config;           /* resolved, as far as the facts are known (train/resolve.h) */
+    adcgs_train_config whole;            /* of the scene as one segment, if it is cut */
     adcgs_cpu_level cpu;
     adcgs_pool *pool;
 } adcgs_enc_job;

@@ -11,6 +11,7 @@
 #include "session/enc_whole.h"
 #include "session/plan_parts.h"
 #include "system/atomic.h"
+#include "train/resolve.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -19,7 +20,7 @@ void adcgs_enc_cut_config(adcgs_enc_job *job)
 {
     job->whole = job->config;
     if (job->cuts.n > 1)
-        job->config.params.time_rows = (uint16_t)ADCGS_MIN(job->config.params.time_rows, job->cuts.moments);
+        adcgs_resolve_parts(&job->config, job->cuts.moments);
 }
 
 adcgs_status adcgs_enc_cut(adcgs_enc_job *job, double seconds, adcgs_error *error)

@@ -5,6 +5,7 @@
 #include "session/enc_trials.h"
 
 #include "system/interrupt.h"
+#include "train/resolve.h"
 #include "train/trial/trial.h"
 
 static int show(void *user, const char *without, uint32_t done, uint32_t most)
@@ -37,10 +38,16 @@ adcgs_status adcgs_enc_try(adcgs_enc_job *job, adcgs_enc_context *w, adcgs_error
                                           .progress = show,
                                           .user = w};
     adcgs_trials trials;
+    uint8_t dropped[ADCGS_MECHANISMS];
     const char *const state = job->o->finish ? job->o->finish : job->o->resume;
-    if (state && !job->o->has_segment)
-        return adcgs_checkpoint_adopt(&job->config, state, error);
+    if (state && !job->o->has_segment) {
+        ADCGS_TRY(adcgs_checkpoint_dropped(dropped, state, error));
+        adcgs_resolve_trials(&job->config, dropped);
+        return ADCGS_OK;
+    }
     ADCGS_TRY(adcgs_trials_run(&trials, &job->config, job->scene, &options, error));
+    adcgs_trials_dropped(&trials, dropped);
+    adcgs_resolve_trials(&job->config, dropped);
     adcgs_progress_clear(&w->progress);
     adcgs_trials_format(&trials, w->trials);
     tell(job, &trials);

@@ -5,6 +5,7 @@
 #include "metric/evaluate.h"
 #include "session/enc_parts.h"
 #include "system/interrupt.h"
+#include "train/resolve.h"
 
 #include <adcgs/adcgs.h>
 
@@ -45,7 +46,7 @@ static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_context *w, const
 {
     adcgs_enc_job whole = *job;
     whole.config = job->whole;
-    whole.config.iterations *= job->cuts.n;
+    adcgs_resolve_whole(&whole.config, job->cuts.n);
     free(w->state);
     w->state = NULL;
     w->segments = w->segment = w->next_log = 0;

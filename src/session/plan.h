@@ -42,6 +42,8 @@ typedef struct adcgs_plan {
     /* How it is trained. */
     adcgs_cpu_level cpu; /**< kernels differ in the last bit, and so do runs */
     adcgs_train_config config;
+    int has_details;
+    uint32_t details; /**< details per image of the scene (adcgs_plan_details()), if they determine max_anchors */
     /* How it is coded. */
     double origin[3], scale;
     uint32_t timebase_num, timebase_den;
@@ -55,7 +57,7 @@ void adcgs_plan_clear(adcgs_plan *plan);
  * Estimates the training cost of a part of a scene, in seconds of one processor. The error is a factor of two or three, about the
  * same for all parts.
  */
-double adcgs_plan_cost(const adcgs_train_config *config, const adcgs_scene *part);
+double adcgs_plan_cost(const adcgs_plan *plan, const adcgs_scene *part);
 
 /** Writes a plan for a scene, with the files that each segment needs. An existing file has to be the same plan. */
 adcgs_status adcgs_plan_write(const adcgs_plan *plan, const adcgs_scene *scene, const char *path, adcgs_error *error);

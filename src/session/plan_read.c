@@ -140,9 +140,9 @@ static adcgs_status read_values(const adcgs_json_place *at, adcgs_train_config *
     json_array_foreach(chosen, i, item)
     {
         const adcgs_setting *const s = json_is_string(item) ? adcgs_setting_find(json_string_value(item)) : NULL;
-        if (!s || !s->own)
-            return BAD(at, "chosen", "entry %zu is not a setting that records the user's choice", i);
-        ((uint8_t *)c)[s->own] = 1;
+        if (!s || s->group == ADCGS_SETTING_SWITCHES)
+            return BAD(at, "chosen", "entry %zu is not a setting that a user can give", i);
+        c->origin[s - adcgs_settings].given = 1;
     }
     return ADCGS_OK;
 }
@@ -161,7 +161,7 @@ static adcgs_status read_settings(const adcgs_json_place *at, adcgs_plan *p)
     adcgs_train_config *c = &p->config;
     adcgs_error why;
     double details = 0;
-    int preset, level, has_psnr, has_details;
+    int preset, level, has_psnr;
     ADCGS_TRY(get_choice(at, "cpu", adcgs_cpu_names, &level));
     p->cpu = (adcgs_cpu_level)level;
     if (!level)
@@ -171,9 +171,8 @@ static adcgs_status read_settings(const adcgs_json_place *at, adcgs_plan *p)
     ADCGS_TRY(read_values(at, c));
     ADCGS_TRY(get_given(at, "psnr", ADCGS_TARGET_PSNR_MIN, ADCGS_TARGET_PSNR_MAX, &c->target_value, &has_psnr));
     c->target = has_psnr ? ADCGS_TARGET_PSNR : ADCGS_TARGET_NONE;
-    ADCGS_TRY(get_given(at, "details", 0, UINT32_MAX, &details, &has_details));
-    c->details = (uint32_t)details;
-    c->has_details = (uint8_t)has_details;
+    ADCGS_TRY(get_given(at, "details", 0, UINT32_MAX, &details, &p->has_details));
+    p->details = (uint32_t)details;
     return adcgs_train_check(c, &why) == ADCGS_OK ? ADCGS_OK : BAD(at, "settings", "%.140s", why.text);
 }
 

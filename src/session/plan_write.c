@@ -7,8 +7,7 @@
 #include "scene/layouts/open.h"
 #include "system/atomic.h"
 #include "system/json.h"
-#include "train/anchor_plan.h"
-#include "train/settings.h"
+#include "train/resolve.h"
 
 #include <adcgs/cpu.h>
 
@@ -42,14 +41,12 @@ static double share_drawn(const adcgs_train_config *c)
     return (quarter / 16 + (half - quarter) / 4 + (1 - half)) / ((double)c->scale * c->scale);
 }
 
-double adcgs_plan_cost(const adcgs_train_config *config, const adcgs_scene *part)
+double adcgs_plan_cost(const adcgs_plan *plan, const adcgs_scene *part)
 {
     double pixels = 0;
-    uint32_t details;
-    adcgs_error ignored;
-    adcgs_train_config c = *config;
-    c.own_anchors |= !c.has_details; /* details are not counted yet, and no image is read here */
-    adcgs_plan_anchors(&c, part, &details, &ignored);
+    adcgs_train_config c = plan->config;
+    if (plan->has_details)
+        adcgs_resolve_anchors(&c, plan->details);
     const uint32_t n = part->n_views[ADCGS_SPLIT_TRAIN];
     for (uint32_t i = 0; i < n; i++)
         pixels += (double)part->views[ADCGS_SPLIT_TRAIN][i].camera.width * part->views[ADCGS_SPLIT_TRAIN][i].camera.height;
@@ -102,11 +99,11 @@ static void put_settings(adcgs_json *j, const adcgs_plan *p)
     adcgs_json_close(j);
     adcgs_json_open(j, "chosen", '[');
     for (const adcgs_setting *s = adcgs_settings; s->name; s++)
-        if (s->own && ((const uint8_t *)c)[s->own])
+        if (adcgs_setting_is_given(c, s->name))
             adcgs_json_string(j, NULL, s->name);
     adcgs_json_close(j);
     adcgs_json_real(j, "psnr", c->target == ADCGS_TARGET_PSNR ? c->target_value : (double)NAN);
-    adcgs_json_real(j, "details", c->has_details ? c->details : (double)NAN);
+    adcgs_json_real(j, "details", p->has_details ? p->details : (double)NAN);
 }
 
 /** A path relative to the scene's folder, if it lies there. */
@@ -142,7 +139,7 @@ static adcgs_status put_segment(adcgs_json *j, const adcgs_plan *p, const adcgs_
     adcgs_json_real(j, "crossfade", p->cuts.reach[i]);
     adcgs_json_int(j, "follows", p->segments[i].follows ? i : 0);
     adcgs_json_int(j, "views", part.n_views[ADCGS_SPLIT_TRAIN]);
-    adcgs_json_real(j, "cost", round(10 * adcgs_plan_cost(&p->config, &part)) / 10);
+    adcgs_json_real(j, "cost", round(10 * adcgs_plan_cost(p, &part)) / 10);
     put_files(j, scene, &part);
     adcgs_json_close(j);
     adcgs_scene_part_clear(&part);

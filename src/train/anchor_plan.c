@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Maximum number of anchors of a scene. */
+/** \file Details of a scene. */
 #include "train/anchor_plan.h"
 
 #include "metric/detail.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-/* Origin: chosen by hand, not measured. The rule between them is calibrated (doc/log/anchors.md, "Grid of anchor numbers"). */
-enum {
-    PICTURES_MOST = 16, /* maximum number of images for the details */
-    ANCHORS_LEAST = 100 /* minimum of max_anchors */
-};
+enum { PICTURES_MOST = 16 }; /* maximum number of images for the details; chosen by hand, not measured */
 
 adcgs_status adcgs_plan_details(const adcgs_scene *scene, int divide, uint32_t *details, adcgs_error *error)
 {
@@ -29,18 +24,5 @@ adcgs_status adcgs_plan_details(const adcgs_scene *scene, int divide, uint32_t *
         sum += here;
     }
     *details = (uint32_t)(sum / n);
-    return ADCGS_OK;
-}
-
-adcgs_status adcgs_plan_anchors(adcgs_train_config *c, const adcgs_scene *scene, uint32_t *details, adcgs_error *error)
-{
-    *details = 0;
-    if (c->own_anchors || !(c->detail_anchors > 0))
-        return ADCGS_OK;
-    *details = c->details;
-    if (!c->has_details)
-        ADCGS_TRY(adcgs_plan_details(scene->whole ? scene->whole : scene, c->scale, details, error));
-    c->max_anchors = (uint32_t)fmin(fmax((double)c->detail_anchors * sqrt(*details), ANCHORS_LEAST), ADCGS_ANCHORS_MAX);
-    c->start_anchors = ADCGS_MIN(c->start_anchors, c->max_anchors);
     return ADCGS_OK;
 }

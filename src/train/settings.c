@@ -125,6 +125,19 @@ int adcgs_setting_is_preset(const adcgs_setting *s, const adcgs_train_config *c)
     return adcgs_setting_get(s, c) == as_held(s, s->preset[preset_of(c)]);
 }
 
+int adcgs_setting_is_given(const adcgs_train_config *c, const char *name)
+{
+    return c->origin[adcgs_setting_find(name) - adcgs_settings].given;
+}
+
+int adcgs_setting_group_is_given(const adcgs_train_config *c, adcgs_setting_group group)
+{
+    for (const adcgs_setting *s = adcgs_settings; s->name; s++)
+        if (s->group == group && c->origin[s - adcgs_settings].given)
+            return 1;
+    return 0;
+}
+
 /* ---- Checks ---- */
 
 int adcgs_setting_may_be(const adcgs_setting *s, double value)
@@ -190,7 +203,7 @@ static adcgs_status check_target(const adcgs_train_config *c, adcgs_error *error
                           min, max);
     if (c->without_rate || c->without_rounding)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "a target size or PSNR needs rate: remove --without rate and --uncompressed");
-    if (c->own_lambda)
+    if (adcgs_setting_is_given(c, "lambda"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "lambda=%g and a target size or PSNR, which controls it: expected one of them",
                           (double)c->lambda);
     return ADCGS_OK;
@@ -224,9 +237,8 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
 static void choose(adcgs_train_config *c, const adcgs_setting *s, double value)
 {
     adcgs_setting_put(s, c, value);
-    if (s->own)
-        *((uint8_t *)c + s->own) = 1;
-    if (s->offset == offsetof(adcgs_train_config, max_anchors) && !c->own_start) {
+    c->origin[s - adcgs_settings].given = 1;
+    if (s->offset == offsetof(adcgs_train_config, max_anchors) && !adcgs_setting_is_given(c, "start_anchors")) {
         const double start = adcgs_setting_find("start_anchors")->preset[preset_of(c)];
         c->start_anchors = (uint32_t)fmin(start, value);
     }

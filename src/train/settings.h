@@ -43,7 +43,6 @@ typedef struct adcgs_setting {
     const char *name;
     adcgs_setting_kind kind; /**< of the field */
     size_t offset;           /**< of the field in the configuration */
-    size_t own;              /**< offset of the byte that is 1 if the user set the value; 0: none */
     adcgs_setting_group group;
     adcgs_setting_fixed fixed;
     int affects;
@@ -64,7 +63,7 @@ extern const adcgs_setting_former adcgs_settings_former[];
 extern const char *const adcgs_train_presets[];
 
 /** Maximum number of settings with names; definition, above the rows of the table. */
-#define ADCGS_SETTING_NAMES 120
+#define ADCGS_SETTING_NAMES ADCGS_SETTINGS_MAX
 /** The names that adcgs_train_set() accepts, NULL-terminated. */
 void adcgs_setting_names(const char *names[ADCGS_SETTING_NAMES + 1]);
 /** Finds the row of a name, or of a former name; NULL if there is none. Names used by the program itself always exist. */
@@ -72,8 +71,12 @@ const adcgs_setting *adcgs_setting_find(const char *name);
 /** Finds the next former name in a list for adcgs_train_set(), and moves *list behind its entry; NULL if there is none. */
 const adcgs_setting_former *adcgs_setting_next_former(const char **list);
 double adcgs_setting_get(const adcgs_setting *setting, const adcgs_train_config *config);
-/** Sets a value, which must be valid, without marking it as set by the user. */
+/** Sets a value, which must be valid, without recording its origin. */
 void adcgs_setting_put(const adcgs_setting *setting, adcgs_train_config *config, double value);
+/** True if the user gave the setting of this name. */
+int adcgs_setting_is_given(const adcgs_train_config *config, const char *name);
+/** True if the user gave any setting of the group. */
+int adcgs_setting_group_is_given(const adcgs_train_config *config, adcgs_setting_group group);
 /** True if a value is in range. The bounds are included, as decimals and as binary32. */
 int adcgs_setting_may_be(const adcgs_setting *setting, double value);
 /** True if the value equals the one of the configuration's preset. */

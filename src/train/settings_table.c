@@ -32,18 +32,18 @@ const char *const adcgs_train_presets[] = {"draft", "fast", "medium", "slow", "p
 #define ALL(x) { x, x, x, x, x }
 #define BUT_PAPER(x, paper) { x, x, x, x, paper }
 
-/* A row: most settings bind a run from the start, and nothing depends on whether the user set them. */
-#define ROW(name, field, own, group, fixed, affects, min, max, ...) \
-    { name, KIND(field), AT(field), own, ADCGS_SETTING_##group, ADCGS_FIXED_##fixed, affects, min, max, __VA_ARGS__ }
+/* A row: most settings bind a run from the start. */
+#define ROW(name, field, group, fixed, affects, min, max, ...) \
+    { name, KIND(field), AT(field), ADCGS_SETTING_##group, ADCGS_FIXED_##fixed, affects, min, max, __VA_ARGS__ }
 /* clang-format on */
-#define RUN(name, ...) ROW(#name, name, 0, RUN, ALWAYS, __VA_ARGS__)
-#define LOSS(name, ...) ROW(#name, name, 0, LOSS, ALWAYS, __VA_ARGS__)
-#define MODEL(name, ...) ROW(#name, params.name, 0, MODEL, ALWAYS, __VA_ARGS__)
-#define NETWORK(name, ...) ROW(#name, shape.name, AT(own_networks), NETWORKS, ALWAYS, __VA_ARGS__)
-#define STEP(name, ...) ROW(#name, shape.name, 0, STEPS, ALWAYS, __VA_ARGS__)
-#define ANCHOR(name, ...) ROW(#name, name, 0, ANCHORS, ALWAYS, __VA_ARGS__)
-#define TIME(name, affects, max, ...) ROW(#name, name, 0, TIMES, ALWAYS, affects, 0, max, __VA_ARGS__)
-#define SWITCH(name, fixed, help) ROW(#name, name, 0, SWITCHES, fixed, 0, 0, 1, ALL(0), help)
+#define RUN(name, ...) ROW(#name, name, RUN, ALWAYS, __VA_ARGS__)
+#define LOSS(name, ...) ROW(#name, name, LOSS, ALWAYS, __VA_ARGS__)
+#define MODEL(name, ...) ROW(#name, params.name, MODEL, ALWAYS, __VA_ARGS__)
+#define NETWORK(name, ...) ROW(#name, shape.name, NETWORKS, ALWAYS, __VA_ARGS__)
+#define STEP(name, ...) ROW(#name, shape.name, STEPS, ALWAYS, __VA_ARGS__)
+#define ANCHOR(name, ...) ROW(#name, name, ANCHORS, ALWAYS, __VA_ARGS__)
+#define TIME(name, affects, max, ...) ROW(#name, name, TIMES, ALWAYS, affects, 0, max, __VA_ARGS__)
+#define SWITCH(name, fixed, help) ROW(#name, name, SWITCHES, fixed, 0, 0, 1, ALL(0), help)
 
 const adcgs_setting adcgs_settings[] = {
     RUN(iterations, S | Q, 10, 1e7, {3000, 20000, 40000, 100000, 80000}, "iterations of the run, each one optimiser step"),
@@ -71,7 +71,7 @@ const adcgs_setting adcgs_settings[] = {
      * Luiten et al. 2024, Dynamic 3D Gaussians, 3DV. Scale penalty: Lombardi et al. 2021, Mixture of volumetric primitives,
      * SIGGRAPH; Lu et al. 2024, Scaffold-GS, CVPR. Dropout: Srivastava et al. 2014, JMLR 15.
      */
-    ROW("lambda", lambda, AT(own_lambda), LOSS, WITH_LAMBDA, B | Q, 0, 1000, ALL(0.1),
+    ROW("lambda", lambda, LOSS, WITH_LAMBDA, B | Q, 0, 1000, ALL(0.1),
         "loss per mebibyte of features and networks; larger means smaller files; default times the images' contrast / 0.22"),
     LOSS(network_rate, B | Q, 0, 1000, BUT_PAPER(1, 0), "weight of the networks' bits, relative to those of features"),
     LOSS(rate_period, S | Q, 1, 1000, ALL(4),
@@ -79,9 +79,9 @@ const adcgs_setting adcgs_settings[] = {
     LOSS(rdo_strength, B | Q, 0, 1000, ALL(0),
          "weight of bits in the choice of quantised levels, relative to lambda; 0: nearest levels"),
     LOSS(ssim_weight, Q, 0, 1, ALL(0.2), "share of 1 - SSIM in the photometric loss; the rest is error per pixel"),
-    ROW("l2_share", l2_share, AT(own_l2_share), LOSS, ALWAYS, Q, 0, 1, BUT_PAPER(0.9, 0),
+    ROW("l2_share", l2_share, LOSS, ALWAYS, Q, 0, 1, BUT_PAPER(0.9, 0),
         "share of squares in the error per pixel, the rest is L1; by default at most 0.5 if one camera sees each frame"),
-    ROW("rigidity_weight", rigidity_weight, AT(own_rigidity), LOSS, ALWAYS, S | Q, 0, 1000, BUT_PAPER(0.02, 0),
+    ROW("rigidity_weight", rigidity_weight, LOSS, ALWAYS, S | Q, 0, 1000, BUT_PAPER(0.02, 0),
         "weight of the rigidity regulariser between neighbouring anchors; by default 0 if several views share a timestamp"),
     LOSS(scale_reg_weight, S | Q, 0, 1000, BUT_PAPER(0.02, 0), "weight of the scale regulariser"),
     LOSS(distortion_weight, Q, 0, 1000, ALL(0),
@@ -103,11 +103,11 @@ const adcgs_setting adcgs_settings[] = {
     MODEL(fine_uses_fv, S | B | Q, 0, 1, ALL(1), "0 or 1: the fine deformation reads f_v"),
     MODEL(coarse_rotation, S | B | Q, 0, 1, ALL(1), "0 or 1: the coarse deformation includes rotation"),
     MODEL(adaptive_steps, S | B | Q, 0, 1, ALL(0), "0 or 1: a network predicts each anchor's quantiser steps"),
-    ROW("lifetimes", params.spans, 0, MODEL, ALWAYS, S | B | Q, 0, 1, BUT_PAPER(1, 0),
+    ROW("lifetimes", params.spans, MODEL, ALWAYS, S | B | Q, 0, 1, BUT_PAPER(1, 0),
         "0 or 1: moving anchors have lifetimes; off if matching finds no motion"),
     MODEL(bodies, B | Q, 0, ADCGS_BODIES_MAX, BUT_PAPER(8, 0), "maximum number of rigid bodies; as many exist as matching finds"),
     MODEL(time_rows, B | Q, 0, ADCGS_TIME_ROWS_MAX, ALL(40), "rows of the time table, at most one per timestamp; 0: no motion"),
-    ROW("smooth_time", params.smooth_time, AT(own_smooth), MODEL, ALWAYS, Q, 0, 1, BUT_PAPER(1, 0),
+    ROW("smooth_time", params.smooth_time, MODEL, ALWAYS, Q, 0, 1, BUT_PAPER(1, 0),
         "0 or 1: a spline interpolates the time table; by default off if half of the cameras or more see each frame"),
     MODEL(time_width, S | B | Q, 0, ADCGS_TIME_WIDTH_MAX, BUT_PAPER(16, 64), "values in a row of the time table"),
 
@@ -130,11 +130,10 @@ const adcgs_setting adcgs_settings[] = {
     STEP(step_colour, B | Q, 1e-4, 10, ALL(0.02), "initial quantiser step of colours; it is trained"),
 
     /* Densification: Kerbl et al. 2023; by temporal significance: ADC-GS, section 3.5. */
-    ROW("start_anchors", start_anchors, AT(own_start), ANCHORS, ALWAYS, S | Q, 1, ADCGS_ANCHORS_MAX,
-        {600, 1000, 1000, 1000, 1000},
+    ROW("start_anchors", start_anchors, ANCHORS, ALWAYS, S | Q, 1, ADCGS_ANCHORS_MAX, {600, 1000, 1000, 1000, 1000},
         "initial number of anchors; by default at least 3/4 of max_anchors with points or matched images"),
-    ROW("max_anchors", max_anchors, AT(own_anchors), ANCHORS, ALWAYS, S | B | Q | M, 1, ADCGS_ANCHORS_MAX,
-        {1200, 6000, 8000, 10000, 20000}, "maximum number of anchors; by default from detail_anchors"),
+    ROW("max_anchors", max_anchors, ANCHORS, ALWAYS, S | B | Q | M, 1, ADCGS_ANCHORS_MAX, {1200, 6000, 8000, 10000, 20000},
+        "maximum number of anchors; by default from detail_anchors"),
     ANCHOR(detail_anchors, S | B | Q | M, 0, 10000, BUT_PAPER(50, 0),
            "ratio of max_anchors, unless given, to the square root of the details per image; 0: the preset's max_anchors"),
     ANCHOR(tiers, S | B | Q, 1, ADCGS_TIERS_MAX, BUT_PAPER(4, 1),
@@ -172,7 +171,7 @@ const adcgs_setting adcgs_settings[] = {
     TIME(densify_until, S | B | Q, 2, BUT_PAPER(0.5, 0.3125), "fraction of training at which densification ends"),
     TIME(quant_noise_start, B | Q, 2, BUT_PAPER(0.25, 0.125), "fraction of training from which noise stands for rounding"),
     TIME(rate_start, B | Q, 2, BUT_PAPER(0.3, 0.125), "fraction of training from which the features' bits count in the loss"),
-    ROW("scale_reg_start", scale_reg_start, AT(own_scale_reg_start), TIMES, ALWAYS, S | Q, 0, 2, ALL(0.3),
+    ROW("scale_reg_start", scale_reg_start, TIMES, ALWAYS, S | Q, 0, 2, ALL(0.3),
         "fraction of training from which the scale regulariser counts; 0 in dynamic scenes if several views share a timestamp"),
     TIME(fine_start, S | Q, 2, BUT_PAPER(0.35, 0.1), "fraction of training from which the fine deformation is applied"),
     TIME(prune_units_at, S | B | Q, 2, BUT_PAPER(0.52, 2),
@@ -195,6 +194,7 @@ const adcgs_setting adcgs_settings[] = {
     SWITCH(bf16, ALWAYS, "rendering networks trained in bf16"),
     {.name = NULL},
 };
+_Static_assert(ADCGS_COUNTOF(adcgs_settings) <= ADCGS_SETTINGS_MAX, "a configuration records the origin of each row");
 
 const adcgs_setting_former adcgs_settings_former[] = {
     {"average_last", "average_share"},

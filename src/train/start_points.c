@@ -6,12 +6,11 @@
 #include "init/motion_check.h"
 #include "init/rigid/body_pose.h"
 #include "train/density/visibility.h"
+#include "train/resolve.h"
 #include "train/scene_frame.h"
 
 #include <math.h>
 
-/* Of max_anchors, since growth adds the rest; calibrated on llff_fern and zju313_15f (doc/log/initialisation.md). */
-#define START_SHARE 0.75
 /* Of the points; the rest are random points where matching found nothing; chosen by hand, not measured. */
 #define MATCHED_SHARE 0.9
 /*
@@ -294,7 +293,7 @@ static void set_lives(adcgs_stereo *found, const adcgs_train_config *config)
     }
 }
 
-adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene *scene, adcgs_train_config *config,
+adcgs_status adcgs_start_match(adcgs_stereo *found, unsigned how, const adcgs_scene *scene, adcgs_train_config *config,
                                adcgs_pool *pool, adcgs_error *error)
 {
     int matched = 0, whole = 0, moves;
@@ -304,12 +303,12 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene
         ADCGS_TRY(adcgs_stereo_applies(scene, &matched, error));
         ADCGS_TRY(adcgs_stereo_applies(scene->whole ? scene->whole : scene, &whole, error));
     }
-    if ((matched || given) && !config->own_start)
-        config->start_anchors = ADCGS_MAX(config->start_anchors, (uint32_t)(START_SHARE * config->max_anchors));
-    if (matched && !known) {
+    if (matched || given)
+        adcgs_resolve_start(config);
+    if (matched && !(how & ADCGS_START_KNOWN)) {
         options.still = (uint32_t)(MATCHED_SHARE * config->start_anchors);
         options.frames = config->matching_frames;
-        options.judges = config->judges_poses;
+        options.judges = (how & ADCGS_START_JUDGES) != 0;
         options.bodies = config->params.spans ? config->params.bodies : 0;
         options.moving = config->params.spans ? MOVING_MOST : (uint32_t)(MOVING_SHARE * options.still);
         ADCGS_TRY(adcgs_scene_frame(scene, options.origin, &options.scale, error));
@@ -318,9 +317,8 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene
     set_lives(found, config);
     ADCGS_TRY(adcgs_stereo_check_motion(&moves, found, error));
     /* All segments of a stream have the same parameters, so a part's parameters cannot depend on its own content. */
-    if (config->matching_frames && !(scene->whole ? whole : moves))
-        config->params.spans = 0;
-    if (!scene->whole || !config->params.spans || !whole)
-        config->params.bodies = (uint8_t)found->n_bodies;
+    const int may_move = !config->matching_frames || (scene->whole ? whole : moves);
+    const int is_final = !scene->whole || !whole || !may_move || !config->params.spans;
+    adcgs_resolve_matching(config, may_move, is_final ? (int)found->n_bodies : -1);
     return ADCGS_OK;
 }

@@ -19,11 +19,16 @@ typedef struct adcgs_start_points {
     const adcgs_stereo_point **matched; /**< result of matching for a point; NULL: from another source */
 } adcgs_start_points;
 
+enum {
+    ADCGS_START_KNOWN = 1, /**< found is the result of an earlier call for the same scene and is used again */
+    ADCGS_START_JUDGES = 2 /**< report pose errors */
+};
+
 /**
- * Matches images where needed. found receives the points. config receives the number of start_anchors suited to known points, and
- * no lifetimes if matching found no motion. known: found is the result of an earlier call for the same scene and is used again.
+ * Matches images where needed. found receives the points. config is resolved: start_anchors by known points, lifetimes and bodies
+ * by the result of matching. how: bits of ADCGS_START_*.
  */
-adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene *scene, adcgs_train_config *config,
+adcgs_status adcgs_start_match(adcgs_stereo *found, unsigned how, const adcgs_scene *scene, adcgs_train_config *config,
                                adcgs_pool *pool, adcgs_error *error);
 /** Half lifetime of independently moving points, 1: whole duration. */
 float adcgs_half_lifetime(const adcgs_train_config *config, const adcgs_stereo *found);

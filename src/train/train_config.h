@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * The configuration of a training run. The table of settings (settings_table.c) documents each number, its range and its value in
- * each preset; settings.h creates configurations. Times of a run are fractions of its iterations, so that a preset scales to any
- * length.
+ * each preset. settings.h creates the requested configuration, which preset and user determine. resolve.h derives the resolved
+ * one, which a run uses. Times of a run are fractions of its iterations, so that a preset scales to any length.
  */
 #ifndef ADCGS_TRAIN_TRAIN_CONFIG_H
 #define ADCGS_TRAIN_TRAIN_CONFIG_H
@@ -23,16 +23,37 @@ typedef enum adcgs_train_target {
 #define ADCGS_TARGET_PSNR_MAX 80.0
 #define ADCGS_TIME_LIMIT_MAX 1e7 /* seconds */
 
+/** Maximum number of rows in the table of settings. */
+#define ADCGS_SETTINGS_MAX 120
+
+/** Origin of a setting's value. */
+typedef enum adcgs_decider {
+    ADCGS_BY_PRESET,
+    ADCGS_BY_USER,
+    ADCGS_BY_SCENE,    /**< its images, cameras and timestamps */
+    ADCGS_BY_MATCHING, /**< of its images */
+    ADCGS_BY_TRIAL,    /**< of a mechanism */
+    ADCGS_BY_TARGET,   /**< size or PSNR */
+    ADCGS_BY_EFFORT,   /**< of a segment that is due at a time */
+    ADCGS_BY_SEGMENTS, /**< values that the segments of a stream share */
+    ADCGS_DECIDERS
+} adcgs_decider;
+
+/** The record of a setting: the user's part, and the decision that replaced the requested value. */
+typedef struct adcgs_setting_origin {
+    uint8_t given;      /**< 1: the user gave the setting */
+    uint8_t by;         /**< adcgs_decider of a decision; else 0 */
+    double requested;   /**< value before the first decision */
+    double used;        /**< value by the last decision; the run may use another one only in its own state (lambda) */
+    const char *reason; /**< of the last decision, a few words; NULL: none */
+} adcgs_setting_origin;
+
 typedef struct adcgs_train_config {
     const char *preset;
     double time_limit; /**< seconds; > 0: progress is measured in time, and the result depends on the machine */
     adcgs_train_target target;
-    double target_value; /**< bytes or dB */
-    /* Set by the user: no target changes lambda, max_anchors or the networks' widths, and no scene changes the others. */
-    uint8_t own_lambda, own_start, own_anchors, own_networks, own_rigidity, own_scale_reg_start, own_l2_share, own_smooth;
-    uint32_t details; /**< details per image of the scene, if known (adcgs_plan_details()) */
-    uint8_t has_details;
-    uint8_t judges_poses; /**< 1: report pose errors; not part of checkpoints or streams */
+    double target_value;                             /**< bytes or dB */
+    adcgs_setting_origin origin[ADCGS_SETTINGS_MAX]; /**< per row of the table of settings */
     /* The run. */
     uint32_t iterations;
     uint32_t batch; /**< view passes per iteration */

@@ -166,7 +166,8 @@ static adcgs_status encode_segments(adcgs_enc_context *w, const adcgs_enc_job *j
 /* ---- The job ---- */
 
 /** Checks the options before anything long begins. */
-static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_context *w, adcgs_scene_options *scene, adcgs_error *error)
+static adcgs_status prepare(adcgs_enc_job *job, adcgs_train_config *requested, adcgs_enc_context *w, adcgs_scene_options *scene,
+                            adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
     ADCGS_TRY(adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &job->cpu, error));
@@ -177,7 +178,9 @@ static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_context *w, adcgs_scen
                           "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
                           "30000/1001",
                           o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
-    ADCGS_TRY(adcgs_enc_configure(&job->config, o, job->cpu, error));
+    ADCGS_TRY(adcgs_enc_configure(requested, o, job->cpu, error));
+    job->requested = requested;
+    job->config = *requested;
     ADCGS_TRY(check_distinct(o, error));
     if (o->output && !(job->ranks && job->ranks->rank))
         note_extension(job->cli, o->output);
@@ -229,7 +232,8 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_context *w, int *met, adcg
 {
     const adcgs_enc_options *o = job->o;
     adcgs_scene_options scene = {.points_path = o->points, .dataset = o->dataset};
-    ADCGS_TRY(prepare(job, w, &scene, error));
+    adcgs_train_config requested;
+    ADCGS_TRY(prepare(job, &requested, w, &scene, error));
     const int follows = job->ranks && job->ranks->rank;
     const uint32_t shared = o->live || o->finish ? 1 : job->config.batch;
     if (follows && (!o->has_segment || o->live) && (uint32_t)job->ranks->rank >= shared) /* this rank has no views to share */

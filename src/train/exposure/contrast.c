@@ -2,6 +2,8 @@
 /** \file Contrast of a scene, and its effect on lambda. */
 #include "train/exposure/contrast.h"
 
+#include "train/resolve.h"
+
 #include <math.h>
 
 enum { PICTURES_MOST = 64 }; /* maximum number of images for the contrast; chosen by hand, not measured */
@@ -35,9 +37,8 @@ adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_erro
 
 adcgs_status adcgs_contrast_lambda(adcgs_trainer *t, adcgs_error *error)
 {
-    const int own = t->config.own_lambda;
     if (!(t->contrast > 0))
         ADCGS_TRY(adcgs_contrast(t, &t->contrast, error));
-    t->lambda = (double)t->config.lambda * (own ? 1 : fmin(fmax(t->contrast / ADCGS_CONTRAST_NOMINAL, LEAST), MOST));
+    t->lambda = adcgs_resolve_contrast(&t->config, fmin(fmax(t->contrast / ADCGS_CONTRAST_NOMINAL, LEAST), MOST));
     return ADCGS_OK;
 }

@@ -2,6 +2,9 @@
 /** \file Anchors and networks that fit into a size. */
 #include "train/rate/rate_plan.h"
 
+#include "train/schedule.h"
+#include "train/settings.h"
+
 #include <math.h>
 
 /* Origin, unless a line states one: chosen by hand, not measured. */
@@ -41,43 +44,46 @@ static int narrower(int width, double factor)
     return width ? ADCGS_MIN(width, ADCGS_MAX(scaled, WIDTH_LEAST)) : 0; /* 0: the network is left out */
 }
 
-/** Chooses the widest networks, from fractions of the preset's width, that leave room for anchors. */
-static adcgs_status plan_networks(adcgs_train_config *c, double *bytes, adcgs_error *error)
+/** Chooses the widest networks, from fractions of the requested width, that leave room for anchors. */
+static adcgs_status plan_networks(adcgs_rate_plan *plan, const adcgs_train_config *config, double *bytes, adcgs_error *error)
 {
-    const double share = NETWORKS_SHARE * c->target_value;
-    const double room = c->own_anchors ? c->target_value - OTHER_BYTES - (double)c->max_anchors * ANCHOR_BITS / 8 : 0;
-    /* Widths tried, relative to the preset; chosen by hand, not measured. */
+    const int has_anchors = adcgs_setting_is_given(config, "max_anchors");
+    const int has_networks = adcgs_setting_group_is_given(config, ADCGS_SETTING_NETWORKS);
+    const double share = NETWORKS_SHARE * config->target_value;
+    const double room = has_anchors ? config->target_value - OTHER_BYTES - (double)config->max_anchors * ANCHOR_BITS / 8 : 0;
+    /* Widths tried, relative to the request; chosen by hand, not measured. */
     static const double factors[] = {1, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125};
-    const adcgs_shape wide = c->shape;
+    adcgs_train_config c = *config;
     for (size_t i = 0; i < ADCGS_COUNTOF(factors); i++) {
         size_t weights;
-        c->shape.theta_width = narrower(wide.theta_width, factors[i]);
-        c->shape.omega_width = narrower(wide.omega_width, factors[i]);
-        c->shape.varpi_width = narrower(wide.varpi_width, factors[i]);
-        c->shape.entropy_width = narrower(wide.entropy_width, factors[i]);
-        ADCGS_TRY(count_weights(c, &weights, error));
-        *bytes = (adcgs_train_prunes_units(c) ? UNITS_STAY : 1) * (double)weights * ADCGS_WEIGHT_BITS / 8;
-        if (c->own_networks || *bytes <= fmax(share, room))
+        c.shape.theta_width = narrower(config->shape.theta_width, factors[i]);
+        c.shape.omega_width = narrower(config->shape.omega_width, factors[i]);
+        c.shape.varpi_width = narrower(config->shape.varpi_width, factors[i]);
+        c.shape.entropy_width = narrower(config->shape.entropy_width, factors[i]);
+        ADCGS_TRY(count_weights(&c, &weights, error));
+        *bytes = (adcgs_train_prunes_units(&c) ? UNITS_STAY : 1) * (double)weights * ADCGS_WEIGHT_BITS / 8;
+        if (has_networks || *bytes <= fmax(share, room))
             break;
     }
+    plan->shape = c.shape;
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_rate_plan(adcgs_train_config *c, adcgs_error *error)
+adcgs_status adcgs_rate_plan_make(adcgs_rate_plan *plan, const adcgs_train_config *c, adcgs_error *error)
 {
     double networks;
-    if (c->target != ADCGS_TARGET_NONE)
-        c->lambda = LAMBDA_FIRST;
+    *plan =
+        (adcgs_rate_plan){c->target == ADCGS_TARGET_NONE ? c->lambda : LAMBDA_FIRST, c->shape, c->start_anchors, c->max_anchors};
     if (c->target != ADCGS_TARGET_SIZE)
         return ADCGS_OK;
-    ADCGS_TRY(plan_networks(c, &networks, error));
+    ADCGS_TRY(plan_networks(plan, c, &networks, error));
     const double anchors = floor((c->target_value - networks - OTHER_BYTES) * 8 / ANCHOR_BITS);
     if (anchors < ANCHORS_LEAST)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%.0f bytes are too few: networks, cameras and headers alone take about %.0f",
                           c->target_value, networks + OTHER_BYTES);
-    if (!c->own_anchors)
-        c->max_anchors = (uint32_t)fmax(fmin(anchors, fmin((double)c->max_anchors * ANCHORS_GROWTH, ADCGS_ANCHORS_MAX)),
-                                        fmin(anchors * ANCHOR_BITS / FEWEST_BITS, c->max_anchors));
-    c->start_anchors = ADCGS_MIN(c->start_anchors, c->max_anchors);
+    if (!adcgs_setting_is_given(c, "max_anchors"))
+        plan->max_anchors = (uint32_t)fmax(fmin(anchors, fmin((double)c->max_anchors * ANCHORS_GROWTH, ADCGS_ANCHORS_MAX)),
+                                           fmin(anchors * ANCHOR_BITS / FEWEST_BITS, c->max_anchors));
+    plan->start_anchors = ADCGS_MIN(c->start_anchors, plan->max_anchors);
     return ADCGS_OK;
 }

@@ -6,7 +6,6 @@
 #include "scene/content.h"
 #include "system/atomic.h"
 #include "system/file.h"
-#include "train/settings.h"
 #include "train/state/checkpoint_walk.h"
 #include "train/trial/mechanisms.h"
 
@@ -102,7 +101,7 @@ adcgs_status adcgs_trainer_load(adcgs_trainer *t, const char *path, adcgs_error 
  */
 enum { TRIALS_AT = sizeof magic + 16 + 8 + 8 + 4 * 4 + 16 + 1 + 4 + 8 };
 
-adcgs_status adcgs_checkpoint_adopt(adcgs_train_config *config, const char *path, adcgs_error *error)
+adcgs_status adcgs_checkpoint_dropped(uint8_t dropped[ADCGS_MECHANISMS], const char *path, adcgs_error *error)
 {
     char text[ADCGS_TRIALS_TEXT] = "";
     uint64_t format = 0;
@@ -116,7 +115,6 @@ adcgs_status adcgs_checkpoint_adopt(adcgs_train_config *config, const char *path
     text[sizeof text - 1] = '\0';
     free(data);
     for (int m = 0; m < ADCGS_MECHANISMS; m++)
-        if (adcgs_mechanism_is_dropped(m, text))
-            adcgs_setting_put(adcgs_setting_find(adcgs_mechanism_settings[m]), config, 0);
+        dropped[m] = (uint8_t)adcgs_mechanism_is_dropped(m, text);
     return ADCGS_OK;
 }

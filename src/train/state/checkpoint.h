@@ -22,10 +22,10 @@ adcgs_status adcgs_trainer_rescue(const adcgs_trainer *trainer, const char *path
 uint32_t adcgs_trainer_rescued(const adcgs_trainer *trainer);
 adcgs_status adcgs_trainer_load(adcgs_trainer *trainer, const char *path, adcgs_error *error);
 /**
- * Turns off in config the mechanisms that trials decide (train/trial/trial.h) and that are off in a file, because a continued run
- * has no trials. A file that is no checkpoint changes nothing: adcgs_trainer_load() reports it.
+ * Finds the mechanisms that trials (train/trial/trial.h) dropped before the run of a file, 1 each. A continued run has no trials.
+ * A file that is no checkpoint has none: adcgs_trainer_load() reports it.
  */
-adcgs_status adcgs_checkpoint_adopt(adcgs_train_config *config, const char *path, adcgs_error *error);
+adcgs_status adcgs_checkpoint_dropped(uint8_t dropped[ADCGS_MECHANISMS], const char *path, adcgs_error *error);
 /** The same in memory, for rollback. Images are not compared. */
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error);
 adcgs_status adcgs_trainer_restore(adcgs_trainer *trainer, const uint8_t *data, size_t size, adcgs_error *error);

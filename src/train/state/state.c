@@ -7,15 +7,11 @@
 #include "train/anchor_plan.h"
 #include "train/continue_segment.h"
 #include "train/initialise.h"
-#include "train/rate/rate_plan.h"
+#include "train/resolve.h"
 #include "train/scene_frame.h"
-#include "train/settings.h"
 #include "train/start_points.h"
 
 #include <math.h>
-
-/* Maximum l2_share if one camera sees each frame; calibrated on synth_robot_dnerf and nrnerf_hand (doc/log/training.md). */
-#define SQUARE_ALONE 0.5f
 
 static size_t slots_of(const adcgs_fmodel *f)
 {
@@ -98,17 +94,13 @@ static adcgs_status create_viewpoints(adcgs_trainer *t, adcgs_error *error)
 /** Continues the model of the previous segment. */
 static adcgs_status follow(adcgs_trainer *t, const adcgs_model *before, adcgs_error *error)
 {
-    t->config.params = before->params;
+    adcgs_resolve_previous(&t->config, &before->params);
     adcgs_model_digest(before, t->before);
     return adcgs_continue_segment(&t->f, before, &t->config, &t->stereo, t->scene->duration, t->cpu, error);
 }
 
-/**
- * Uses a spline over time if less than half of the cameras see a frame on average. The spline supplies content that a frame does
- * not show from adjacent frames. Where most cameras see each frame, the frames suffice, and a spline would blur sudden changes.
- * All parts of a scene have the choice of the whole scene. A preset without a spline stays without.
- */
-static adcgs_status choose_smooth_time(adcgs_params *params, const adcgs_scene *scene, adcgs_error *error)
+/** Finds the facts of the scene on which settings depend. */
+static adcgs_status find_facts(adcgs_scene_facts *facts, const adcgs_scene *scene, adcgs_error *error)
 {
     const adcgs_scene *whole = scene->whole ? scene->whole : scene;
     const uint32_t n = whole->n_views[ADCGS_SPLIT_TRAIN];
@@ -117,49 +109,42 @@ static adcgs_status choose_smooth_time(adcgs_params *params, const adcgs_scene *
         return adcgs_alloc_status(error);
     const adcgs_status status = adcgs_group_views(whole->views[ADCGS_SPLIT_TRAIN], n, of, NULL, &cameras, error);
     adcgs_free(NULL, of);
-    params->smooth_time &= (uint64_t)2 * n < (uint64_t)cameras * whole->n_times;
+    *facts = (adcgs_scene_facts){.times = scene->n_times,
+                                 .is_shared = scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * scene->n_times,
+                                 .is_sparse = (uint64_t)2 * n < (uint64_t)cameras * whole->n_times};
     return status;
 }
 
-static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, adcgs_error *error)
+/** Resolves the settings that do not depend on matching. */
+static adcgs_status resolve_begin(adcgs_trainer *t, const adcgs_trainer_input *input, const adcgs_scene_facts *facts,
+                                  adcgs_error *error)
 {
     adcgs_train_config *c = &t->config;
-    const uint32_t times = t->scene->n_times;
+    uint32_t details = input->details ? *input->details : 0;
+    adcgs_resolve_scene(c, facts);
+    if (adcgs_resolve_wants_details(c)) {
+        if (!input->details)
+            ADCGS_TRY(adcgs_plan_details(t->scene->whole ? t->scene->whole : t->scene, c->scale, &details, error));
+        adcgs_resolve_anchors(c, details);
+        t->decisions.details = details;
+    }
+    return adcgs_resolve_target(c, error);
+}
+
+static adcgs_status create_parts(adcgs_trainer *t, const adcgs_trainer_input *input, adcgs_error *error)
+{
+    adcgs_train_config *c = &t->config;
+    const unsigned how = (t->stereo.n_frames > 0 ? ADCGS_START_KNOWN : 0) | (input->judges_poses ? ADCGS_START_JUDGES : 0);
+    adcgs_scene_facts facts;
     ADCGS_TRY(adcgs_train_check(c, error));
     if (c->bf16)
         ADCGS_TRY(adcgs_bf16_check(t->cpu, error));
-    if (c->without_coarse && c->without_fine)
-        c->params.time_rows = 0;
-    if (times <= 1)
-        c->params.time_rows = 0;
-    else if (c->params.time_rows > times)
-        c->params.time_rows = (uint16_t)times;
-    if (!c->params.time_rows)
-        c->params.time_width = c->params.spans = c->params.bodies = c->params.smooth_time = 0;
-    else if (!c->own_smooth)
-        ADCGS_TRY(choose_smooth_time(&c->params, t->scene, error));
-    /*
-     * A single camera finds motion first by large primitives and by the motion of neighbours. Squared errors make it overfit
-     * frames that it cannot explain. With several cameras, one frame suffices.
-     */
-    const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
-    if (several && !c->own_rigidity)
-        c->rigidity_weight = 0;
-    /* In static scenes that cameras filmed from inside, small primitives leave holes early in training, which then stay. */
-    if (several && times > 1 && !c->own_scale_reg_start)
-        c->scale_reg_start = 0;
-    if (!several && times > 1 && !c->own_l2_share)
-        c->l2_share = fminf(c->l2_share, SQUARE_ALONE);
-    if (c->without_coarse)
-        c->shape.omega_width = 0;
-    if (c->without_fine)
-        c->shape.varpi_width = 0;
-    ADCGS_TRY(adcgs_plan_anchors(c, t->scene, &t->decisions.details, error));
-    ADCGS_TRY(adcgs_rate_plan(c, error));
+    ADCGS_TRY(find_facts(&facts, t->scene, error));
+    ADCGS_TRY(resolve_begin(t, input, &facts, error));
     ADCGS_TRY(adcgs_scene_frame(t->scene, t->origin, &t->scale, error));
-    ADCGS_TRY(adcgs_start_match(&t->stereo, t->stereo.n_frames > 0, t->scene, c, t->pool, error));
-    if (before)
-        ADCGS_TRY(follow(t, before, error));
+    ADCGS_TRY(adcgs_start_match(&t->stereo, how, t->scene, c, t->pool, error));
+    if (input->before)
+        ADCGS_TRY(follow(t, input->before, error));
     else
         ADCGS_TRY(adcgs_initialise(&t->f, t->scene, c, &t->stereo, error));
     t->f->is_part = t->scene->whole != NULL;
@@ -173,7 +158,7 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
      * A scene with its own points is recorded from within: the space around cameras is empty, even if other cameras see something
      * behind it.
      */
-    if (several && t->scene->points.n >= ADCGS_POINTS_LEAST)
+    if (facts.is_shared && t->scene->points.n >= ADCGS_POINTS_LEAST)
         ADCGS_TRY(create_viewpoints(t, error));
     t->decisions.points = t->scene->points.n + (uint64_t)t->stereo.n_still + t->stereo.n_moving;
     t->decisions.allowed = c->max_anchors;
@@ -184,13 +169,12 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
 adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                   adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
 {
-    return adcgs_trainer_create_after(out, scene, config, NULL, cpu, pool, error);
+    return adcgs_trainer_create_from(out, scene, config, &(adcgs_trainer_input){.before = NULL}, cpu, pool, error);
 }
 
-/** matched: its content is moved; NULL: images are matched here. */
-static adcgs_status create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
-                           const adcgs_model *before, adcgs_stereo *matched, adcgs_cpu_level cpu, adcgs_pool *pool,
-                           adcgs_error *error)
+adcgs_status adcgs_trainer_create_from(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                       const adcgs_trainer_input *input, adcgs_cpu_level cpu, adcgs_pool *pool,
+                                       adcgs_error *error)
 {
     adcgs_trainer *t = adcgs_alloc(NULL, 1, sizeof *t, error);
     *out = NULL;
@@ -203,28 +187,16 @@ static adcgs_status create(adcgs_trainer **out, const adcgs_scene *scene, const 
     t->lr_scale = 1;
     adcgs_buffer_init(&t->snapshot);
     adcgs_buffer_init(&t->begin);
-    if (matched) {
-        t->stereo = *matched;
-        *matched = (adcgs_stereo){.n_still = 0};
+    if (input->matched) {
+        t->stereo = *input->matched;
+        *input->matched = (adcgs_stereo){.n_still = 0};
     }
-    const adcgs_status status = create_parts(t, before, error);
+    const adcgs_status status = create_parts(t, input, error);
     t->lambda = (double)t->config.lambda;
     if (status != ADCGS_OK)
         adcgs_trainer_free(&t);
     *out = t;
     return status;
-}
-
-adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
-                                        const adcgs_model *before, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
-{
-    return create(out, scene, config, before, NULL, cpu, pool, error);
-}
-
-adcgs_status adcgs_trainer_create_matched(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
-                                          adcgs_stereo *matched, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
-{
-    return create(out, scene, config, NULL, matched, cpu, pool, error);
 }
 
 void adcgs_views_unload(adcgs_trainer *t)

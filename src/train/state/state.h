@@ -130,15 +130,19 @@ typedef struct adcgs_trainer {
 /** ADCGS_ERR_USAGE for a configuration that does not pass adcgs_train_check(). */
 adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                   adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
-/**
- * The same for a part of a scene whose model continues that of the previous part, for a predicted segment. before: has the times
- * of its part in seconds of the scene; may be freed after the call. NULL: none.
- */
-adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
-                                        const adcgs_model *before, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
-/** The same with the matching result of another run over the scene. It is moved to trainer->stereo and may be moved back. */
-adcgs_status adcgs_trainer_create_matched(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
-                                          adcgs_stereo *matched, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
+/** The input of a run besides its scene and its configuration. Unknown members are 0. */
+typedef struct adcgs_trainer_input {
+    /** Model that the run continues, for a predicted segment; with the times of its part in seconds of the scene. */
+    const adcgs_model *before;
+    adcgs_stereo *matched;   /**< result of matching of another run over the scene; moved to trainer->stereo */
+    const uint32_t *details; /**< details per image (adcgs_plan_details()); NULL: counted if needed */
+    int judges_poses;        /**< 1: report pose errors */
+} adcgs_trainer_input;
+
+/** The same with more input, which the trainer does not use after the call. */
+adcgs_status adcgs_trainer_create_from(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                       const adcgs_trainer_input *input, adcgs_cpu_level cpu, adcgs_pool *pool,
+                                       adcgs_error *error);
 void adcgs_trainer_free(adcgs_trainer **trainer);
 /** Frees the loaded images and the image buffers. */
 void adcgs_views_unload(adcgs_trainer *trainer);

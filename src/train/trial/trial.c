@@ -119,7 +119,6 @@ static adcgs_train_config trial_config(const adcgs_train_config *config, const a
     c.densify_interval = ADCGS_MAX(c.iterations / DENSIFICATIONS, 1);
     c.time_limit = 0;
     c.target = ADCGS_TARGET_NONE;
-    c.judges_poses = 0;
     c.batch = 1;
     c.tiers = 1;
     c.seed = seed;
@@ -167,7 +166,8 @@ static adcgs_status run_trial(score *out, const adcgs_train_config *config, tria
     const int same = config->matching_frames && config->params.spans == r->config->params.spans &&
                      config->params.bodies == r->config->params.bodies;
     adcgs_stereo *const matched = first || !same ? NULL : &r->matched;
-    ADCGS_TRY(adcgs_trainer_create_matched(&t, r->scene, config, matched, r->o->cpu, r->o->pool, error));
+    const adcgs_trainer_input input = {.matched = matched, .details = r->details ? &r->details : NULL};
+    ADCGS_TRY(adcgs_trainer_create_from(&t, r->scene, config, &input, r->o->cpu, r->o->pool, error));
     t->picture_memory = r->o->memory;
     adcgs_status status = adcgs_trainer_run(t, NULL, NULL, &stopped, error);
     for (int i = 0; i < ADCGS_MECHANISMS; i++)
@@ -205,8 +205,6 @@ static adcgs_status try_without(trials *r, int mechanism, int second, score *out
     r->done++;
     if (name)
         ADCGS_TRY(adcgs_train_set_value(&c, adcgs_mechanism_settings[mechanism], 0, error));
-    c.details = r->details;
-    c.has_details = r->details > 0;
     return run_trial(out, &c, r, !name && !second, error);
 }
 
@@ -269,16 +267,7 @@ uint32_t adcgs_trial_length(const adcgs_train_config *config)
     return n < ITERATIONS_LEAST || config->time_limit > 0 ? 0 : (uint32_t)fmin(rint(n), ITERATIONS_MOST);
 }
 
-/** Turns off the mechanisms that were dropped. */
-static adcgs_status apply(const adcgs_trials *out, adcgs_train_config *config, adcgs_error *error)
-{
-    for (uint32_t i = 0; i < out->n; i++)
-        if (out->of[i].dropped)
-            ADCGS_TRY(adcgs_train_set_value(config, adcgs_mechanism_settings[out->of[i].mechanism], 0, error));
-    return ADCGS_OK;
-}
-
-adcgs_status adcgs_trials_run(adcgs_trials *out, adcgs_train_config *config, const adcgs_scene *scene,
+adcgs_status adcgs_trials_run(adcgs_trials *out, const adcgs_train_config *config, const adcgs_scene *scene,
                               const adcgs_trials_options *options, adcgs_error *error)
 {
     adcgs_trial_scene held = {.scene = {.n_times = 0}};
@@ -297,7 +286,14 @@ adcgs_status adcgs_trials_run(adcgs_trials *out, adcgs_train_config *config, con
         adcgs_stereo_clear(&r->matched);
     adcgs_free(NULL, r);
     adcgs_trial_scene_clear(&held);
-    return status == ADCGS_OK ? apply(out, config, error) : status;
+    return status;
+}
+
+void adcgs_trials_dropped(const adcgs_trials *t, uint8_t dropped[ADCGS_MECHANISMS])
+{
+    memset(dropped, 0, ADCGS_MECHANISMS);
+    for (uint32_t i = 0; i < t->n; i++)
+        dropped[t->of[i].mechanism] |= t->of[i].dropped != 0;
 }
 
 void adcgs_trials_format(const adcgs_trials *t, char text[ADCGS_TRIALS_TEXT])

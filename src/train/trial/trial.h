@@ -46,11 +46,14 @@ typedef struct adcgs_trials_options {
 uint32_t adcgs_trial_length(const adcgs_train_config *config);
 
 /**
- * Tests the mechanisms that apply to a whole scene, and turns off in config those that lose. The result does not depend on the
- * number of threads. ADCGS_ERR_IO if progress returns nonzero.
+ * Tests the mechanisms that apply to a whole scene. The result does not depend on the number of threads. ADCGS_ERR_IO if progress
+ * returns nonzero.
  */
-adcgs_status adcgs_trials_run(adcgs_trials *out, adcgs_train_config *config, const adcgs_scene *scene,
+adcgs_status adcgs_trials_run(adcgs_trials *out, const adcgs_train_config *config, const adcgs_scene *scene,
                               const adcgs_trials_options *options, adcgs_error *error);
+
+/** The mechanisms that lost, 1 each, as adcgs_resolve_trials() takes them. */
+void adcgs_trials_dropped(const adcgs_trials *trials, uint8_t dropped[ADCGS_MECHANISMS]);
 
 /** "views=12 iterations=400 gains=24.13/24.60 ... dropped=gains" (with/without), for a stream; "" without trials. */
 void adcgs_trials_format(const adcgs_trials *trials, char text[ADCGS_TRIALS_TEXT]);

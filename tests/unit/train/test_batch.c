@@ -122,8 +122,7 @@ static adcgs_train_config run_config(uint32_t batch)
     c.densify_interval = 7;
     c.freeze_start = 0.92f;
     c.average_share = 0.1f;
-    c.rigidity_weight = 0.02f;
-    c.own_rigidity = 1;
+    assert_int_equal(adcgs_train_set(&c, "rigidity_weight=0.02", &error), ADCGS_OK);
     c.distortion_weight = 0.001f;
     c.params.adaptive_steps = batch % 2;
     return c;

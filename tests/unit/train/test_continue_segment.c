@@ -28,7 +28,8 @@ static adcgs_train_config follow_config(void)
 static adcgs_trainer *make(const adcgs_train_config *config, const adcgs_model *before, adcgs_pool *threads)
 {
     adcgs_trainer *t;
-    if (adcgs_trainer_create_after(&t, scene, config, before, adcgs_cpu_best(), threads, &error) != ADCGS_OK)
+    const adcgs_trainer_input input = {.before = before};
+    if (adcgs_trainer_create_from(&t, scene, config, &input, adcgs_cpu_best(), threads, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     t->quantise = adcgs_encode_quantise_hook;
     t->f->is_part = 1;

@@ -5,7 +5,7 @@
 #include "encode/encode.h"
 #include "train/density/sample.h"
 #include "train/rate/rate_control.h"
-#include "train/rate/rate_plan.h"
+#include "train/resolve.h"
 #include "train/rate/rate_search.h"
 
 static adcgs_train_config config_for(adcgs_train_target target, double value)
@@ -33,7 +33,7 @@ static void plans_grow_with_the_size(void **state)
     for (double size = 8000; size < 4e6; size *= 1.5) {
         adcgs_train_config c = config_for(ADCGS_TARGET_SIZE, size);
         const adcgs_train_config before = c;
-        if (adcgs_rate_plan(&c, &error) != ADCGS_OK)
+        if (adcgs_resolve_target(&c, &error) != ADCGS_OK)
             fail_msg("%.0f: %s", size, error.text);
         const int sum = c.shape.theta_width + c.shape.omega_width + c.shape.varpi_width + c.shape.entropy_width;
         assert_true(c.max_anchors >= anchors && sum >= widths);
@@ -52,7 +52,7 @@ static void plans_leave_what_was_chosen(void **state)
     adcgs_train_config c = config_for(ADCGS_TARGET_SIZE, 60000);
     assert_int_equal(adcgs_train_set(&c, "max_anchors=77,theta_width=31", &error), ADCGS_OK);
     const adcgs_shape shape = c.shape;
-    assert_int_equal(adcgs_rate_plan(&c, &error), ADCGS_OK);
+    assert_int_equal(adcgs_resolve_target(&c, &error), ADCGS_OK);
     assert_int_equal(c.max_anchors, 77);
     assert_int_equal(c.start_anchors, 77);
     assert_memory_equal(&shape, &c.shape, sizeof shape);
@@ -61,11 +61,11 @@ static void plans_leave_what_was_chosen(void **state)
 static void sizes_too_small_are_refused(void **state)
 {
     adcgs_train_config c = config_for(ADCGS_TARGET_SIZE, 2500);
-    assert_int_equal(adcgs_rate_plan(&c, &error), ADCGS_ERR_USAGE);
+    assert_int_equal(adcgs_resolve_target(&c, &error), ADCGS_ERR_USAGE);
     assert_non_null(strstr(error.text, "too few"));
     c = config_for(ADCGS_TARGET_PSNR, 30);
     c.lambda = 0;
-    assert_int_equal(adcgs_rate_plan(&c, &error), ADCGS_OK);
+    assert_int_equal(adcgs_resolve_target(&c, &error), ADCGS_OK);
     assert_true(c.lambda > 0);
 }
 
@@ -196,8 +196,8 @@ static uint64_t final_bytes(const adcgs_trainer *t)
 static adcgs_train_config roomy_config(adcgs_train_target target, double value)
 {
     adcgs_train_config c = config_for(target, value);
-    c.own_anchors = 1;
-    c.max_anchors = 800;
+    assert_int_equal(adcgs_train_set_value(&c, "max_anchors", 800, &error), ADCGS_OK);
+    c.start_anchors = 100;
     return c;
 }
 

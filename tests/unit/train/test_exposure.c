@@ -82,7 +82,7 @@ static void lambda_follows_contrast(void **state)
     t->contrast = 0;
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
     assert_true(t->lambda > 0);
-    t->config.own_lambda = 1;
+    assert_int_equal(adcgs_train_set_value(&t->config, "lambda", (double)config.lambda, &error), ADCGS_OK);
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
     assert_float_equal(t->lambda, config.lambda, 0);
     adcgs_trainer_free(&t);

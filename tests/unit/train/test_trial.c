@@ -2,6 +2,7 @@
 /** \file Trials judge on training views that they hold back, drop the mechanisms that lose, and keep the others. */
 #include "tiny_scene.h"
 
+#include "train/resolve.h"
 #include "train/trial/trial.h"
 #include "train/trial/trial_scene.h"
 
@@ -122,10 +123,13 @@ static void losing_mechanisms_are_dropped(void **state)
     assert_int_equal(adcgs_pool_create(&alone, 1, &error), ADCGS_OK);
     for (int i = 0; i < 2; i++) {
         adcgs_train_config c = config;
+        uint8_t dropped[ADCGS_MECHANISMS];
         const adcgs_trials_options options = {.cpu = adcgs_cpu_best(), .pool = i ? alone : pool};
         if (adcgs_trials_run(&trials, &c, scene, &options, &error) != ADCGS_OK)
             fail_msg("%s", error.text);
         adcgs_trials_format(&trials, texts[i]);
+        adcgs_trials_dropped(&trials, dropped);
+        adcgs_resolve_trials(&c, dropped);
         const adcgs_trial *const price = find(&trials, "scale_price"), *const squares = find(&trials, "squares");
         assert_non_null(price);
         assert_non_null(squares);
@@ -199,6 +203,7 @@ static void resumed_runs_adopt_verdicts(void **state)
     config.scale_reg_weight = config.l2_share = 0;
     adcgs_trainer *t = make_trainer(&config, pool);
     const uint32_t until = 10;
+    uint8_t dropped[ADCGS_MECHANISMS];
     int stopped;
     memcpy(t->trials, said, sizeof said);
     assert_int_equal(adcgs_trainer_run(t, stop_at, (void *)(uintptr_t)&until, &stopped, &error), ADCGS_OK);
@@ -206,14 +211,15 @@ static void resumed_runs_adopt_verdicts(void **state)
     adcgs_trainer_free(&t);
     other.lambda = 0.5f;
     assert_true(other.scale_reg_weight > 0);
-    assert_int_equal(adcgs_checkpoint_adopt(&other, in("state"), &error), ADCGS_OK);
+    assert_int_equal(adcgs_checkpoint_dropped(dropped, in("state"), &error), ADCGS_OK);
+    adcgs_resolve_trials(&other, dropped);
     assert_true(other.scale_reg_weight == 0 && other.l2_share == 0 && other.lambda == 0.5f && other.gains == 1);
     t = make_trainer(&other, pool);
     if (adcgs_trainer_load(t, in("state"), &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     assert_string_equal(t->trials, said);
     adcgs_trainer_free(&t);
-    assert_int_not_equal(adcgs_checkpoint_adopt(&other, in("nothing"), &error), ADCGS_OK);
+    assert_int_not_equal(adcgs_checkpoint_dropped(dropped, in("nothing"), &error), ADCGS_OK);
 }
 
 int main(void)
