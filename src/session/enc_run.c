@@ -9,84 +9,15 @@
 #include "model/model_priv.h"
 #include "session/enc_footage.h"
 #include "session/enc_image_space.h"
+#include "session/enc_log.h"
 #include "session/enc_rescue.h"
 #include "system/interrupt.h"
-#include "system/json.h"
 #include "system/text.h"
 #include "train/resolve.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-/* ---- Progress and log ---- */
-
-static void log_line(adcgs_enc_context *w, adcgs_json *line)
-{
-    if (adcgs_json_write(line, w->log, w->o->log, &w->log_error) != ADCGS_OK) {
-        fclose(w->log); /* the run continues without its log, and reports this at its end */
-        w->log = NULL;
-    }
-}
-
-/** Begins a line with the members of all lines. */
-static void open_line(adcgs_enc_context *w, adcgs_json *line, const char *stage)
-{
-    adcgs_json_init(line);
-    line->is_line = 1;
-    line->digits = 6;
-    adcgs_json_open(line, NULL, '{');
-    adcgs_json_string(line, "stage", stage);
-    if (w->segments || w->is_live)
-        adcgs_json_int(line, "segment", w->segment + 1);
-    adcgs_json_int(line, "iteration", w->last.iteration);
-}
-
-/** At the end of a run: the reasons for the model's size. */
-static void log_decisions(adcgs_enc_context *w)
-{
-    adcgs_decision list[ADCGS_DECISIONS];
-    adcgs_json line;
-    if (!w->log)
-        return;
-    adcgs_decisions_list(&w->t->decisions, list);
-    open_line(w, &line, "decisions");
-    for (int i = 0; i < ADCGS_DECISIONS; i++)
-        adcgs_json_real(&line, list[i].name, list[i].value);
-    adcgs_json_close(&line);
-    log_line(w, &line);
-}
-
-static void log_last(adcgs_enc_context *w)
-{
-    const adcgs_train_report *r = &w->last;
-    if (!w->log)
-        return;
-    w->next_log = r->iteration + 100;
-    static const char *const streams[ADCGS_GROUPS] = {"eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4"};
-    adcgs_json line;
-    open_line(w, &line, r->stage);
-    adcgs_json_int(&line, "of", r->iterations);
-    if (r->iteration) {
-        adcgs_json_real(&line, "loss", r->loss);
-        adcgs_json_real(&line, "psnr", r->psnr);
-    }
-    adcgs_json_int(&line, "anchors", r->anchors);
-    adcgs_json_int(&line, "divide", r->divide);
-    adcgs_json_real(&line, "bytes", round(r->bytes));
-    adcgs_json_real(&line, "lambda", r->lambda);
-    adcgs_json_real(&line, "rate", r->rate);
-    adcgs_json_real(&line, "seconds", r->spent.clock);
-    adcgs_json_real(&line, "cpu_seconds", r->spent.cpu);
-    adcgs_json_int(&line, "rollbacks", r->rollbacks);
-    if (r->attempt)
-        adcgs_json_int(&line, "attempt", r->attempt);
-    adcgs_json_open(&line, "streams", '{');
-    for (int i = 0; i < ADCGS_GROUPS; i++)
-        adcgs_json_real(&line, streams[i], round(r->stream[i]));
-    adcgs_json_close(&line);
-    adcgs_json_close(&line);
-    log_line(w, &line);
-}
+/* ---- Progress ---- */
 
 /** Saves a checkpoint. If that fails the run continues, and tries again when the next one is due. */
 static void save_now_and_then(adcgs_enc_context *w, double seconds)
@@ -140,7 +71,9 @@ static int observe(void *user, const adcgs_train_report *r)
     if (r->iteration && !w->first.iteration)
         w->first = *r;
     if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back, and so does another try */
-        log_last(w);
+        adcgs_enc_log_last(w);
+    if (w->t->divide) /* contrast determines lambda once the images are loaded */
+        adcgs_enc_log_settings(w);
     if (w->on_progress)
         stops = w->on_progress(w->progress_user, w);
     else if (r->iteration)
@@ -234,8 +167,9 @@ static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_context *w, adcgs_err
     ADCGS_TRY(status);
     adcgs_enc_preview_show(&w->preview, w->t, NULL, &w->progress);
     adcgs_cli_note(cli, "a file of the state after iteration %u of %u", w->t->iteration, w->t->config.iterations);
-    log_last(w);
-    log_decisions(w);
+    adcgs_enc_log_last(w);
+    adcgs_enc_log_settings(w);
+    adcgs_enc_log_decisions(w);
     return ADCGS_OK;
 }
 
@@ -294,14 +228,14 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_context *w, const char
     if (status == ADCGS_OK && adcgs_enc_team_follows(&w->team)) /* another rank reports and saves the state */
         return stopped && adcgs_interrupted() ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted") : ADCGS_OK;
     if (w->last.stage && w->last.iteration + 100 != w->next_log)
-        log_last(w);
+        adcgs_enc_log_last(w);
     if (status != ADCGS_OK)
         adcgs_enc_rescue(cli, w, error->status);
     ADCGS_TRY(status);
     if (!stopped) {
         adcgs_enc_preview_show(&w->preview, w->t, NULL, &w->progress);
         remark(cli, w);
-        log_decisions(w);
+        adcgs_enc_log_decisions(w);
         return ADCGS_OK;
     }
     if (w->o->beginning && !adcgs_interrupted())
@@ -335,6 +269,7 @@ adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, con
         if (!w->thumbnails)
             return adcgs_alloc_status(error);
     }
+    w->told_settings = 0;
     w->begins = scene->whole && job->cuts.n ? job->cuts.at[w->segment] : 0;
     memcpy(w->t->trials, w->trials, sizeof w->trials);
     w->t->quantise = adcgs_encode_quantise_hook;

@@ -57,6 +57,7 @@ typedef struct adcgs_enc_context {
     double begins;               /* time in the scene at which the trained part begins */
     adcgs_thumbnail *thumbnails; /* until the footage has been checked; NULL: no check */
     unsigned diagnosed;          /* kinds of faults of footage that were reported */
+    int told_settings;           /* 1: the log has the line of settings of the run */
     int told_room;               /* 1: the space for images was reported; 2: also that it is not enough */
 } adcgs_enc_context;
 

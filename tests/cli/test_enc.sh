@@ -66,12 +66,17 @@ scene=$dir/apart enc seven --iterations $n --threads 7
 same one seven "another stream with seven threads, or without test views"
 rm -r "$dir/apart"
 json "$dir/one.log" || bad "--log is not JSON"
-[ "$(wc -l <"$dir/one.log")" -eq 8 ] || { bad "lines in the log"; cat "$dir/one.log"; }
+[ "$(wc -l <"$dir/one.log")" -eq 9 ] || { bad "lines in the log"; cat "$dir/one.log"; }
 whole "$dir/one.out" || bad "--json is not JSON"
 # Before the first iteration nothing is measured. The resolution is always known, also in a resumed run.
 sed 1q "$dir/one.log" | grep '"iteration":0,' | grep -qv -e '"loss"' -e '"psnr"' || bad "loss or PSNR in the log's first line"
 [ "$(grep -c '"loss":0\.[0-9]*,"psnr":[1-9]' "$dir/one.log")" -eq 6 ] || { bad "losses in the log"; cat "$dir/one.log"; }
 [ "$(sed -n 's/.*"divide":\([0-9]*\),.*/\1/p' "$dir/one.log" | uniq | xargs)" = "4 2 1" ] || { bad "resolutions"; cat "$dir/one.log"; }
+# One line names the settings that the scene decided, and not those that the user gave.
+changed='"setting":"scale_reg_start","requested":0.3,"used":0,"by":"scene","reason":"several views share a timestamp"'
+[ "$(grep -c '"stage":"settings".*'"$changed" "$dir/one.log")" -eq 1 ] || { bad "no settings in the log"; cat "$dir/one.log"; }
+enc given --iterations 20 --set scale_reg_start=0.3 --log "$dir/given.log"
+grep '"stage":"settings"' "$dir/given.log" | grep -q scale_reg_start && { bad "a given setting was decided"; cat "$dir/given.log"; }
 # The last log line has the sizes in the stream: the first chunk of f_g is layer 1 except for its framing.
 chunk=$(sed -n 's/.*"f_g1":\([0-9]*\).*/\1/p' "$dir/one.log" | tail -n 1)
 layer=$(sed -n 's/.*"layer1": \([0-9]*\).*/\1/p' "$dir/one.out")

@@ -233,8 +233,8 @@ def samples():
         with open(path, encoding='utf-8') as file:
             values = [json.loads(text) for text in file] if output == 'log' else [json.load(file)]
         for value in values:
-            is_last = output == 'log' and value.get('stage') == 'decisions'
-            yield 'log, decisions' if is_last else output, value
+            stage = value.get('stage') if output == 'log' else None
+            yield 'log, ' + stage if stage in ('settings', 'decisions') else output, value
 
 
 def check_programs(outputs):

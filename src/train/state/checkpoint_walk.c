@@ -62,9 +62,11 @@ static void walk_settings(adcgs_checkpoint_walk *w, adcgs_trainer *t)
         char texts[2][ADCGS_SETTING_TEXT];
         double there = here;
         adcgs_checkpoint_visit(w, &there, sizeof there);
+        const char *const reason = t->config.origin[s - adcgs_settings].reason;
         if (bound && there != here)
-            differ(w, "saved with other options: %s is %s in the file and %s here", s->name,
-                   adcgs_setting_print(s, there, texts[0]), adcgs_setting_print(s, here, texts[1]));
+            differ(w, "saved with other options: %s is %s in the file and %s here%s%s", s->name,
+                   adcgs_setting_print(s, there, texts[0]), adcgs_setting_print(s, here, texts[1]), reason ? ", because " : "",
+                   reason ? reason : "");
     }
 }
 
