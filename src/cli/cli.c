@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 
 #include "cli/completion.h"
+#include "cli/option_rules.h"
 #include "system/flush.h"
 #include "system/numbers.h"
 #include "system/text.h"
@@ -287,7 +288,8 @@ static int check_operands(const adcgs_cli *cli, int n, const char *surplus)
 int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
 {
     struct option longs[ADCGS_OPTIONS_MAX + 4];
-    char letters[2 * ADCGS_OPTIONS_MAX + 5];
+    char letters[2 * ADCGS_OPTIONS_MAX + 5], broken[ADCGS_RULE_TEXT];
+    uint8_t is_given[ADCGS_OPTIONS_MAX] = {0};
     getopt_tables(cli, longs, letters);
     opterr = 0;
     optind = 0; /* restarts the scan, with GNU and musl: a program may parse two command lines */
@@ -315,7 +317,10 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
             note_former(cli, given, option);
         if (option_set(option, optarg))
             return option_wrong(cli, option, optarg);
+        is_given[option - cli->options] = 1;
     }
     *first = optind;
+    if (adcgs_option_rules_check(cli, is_given, broken))
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s", broken);
     return check_operands(cli, argc - optind, argc - optind > cli->max_operands ? argv[optind + cli->max_operands] : "");
 }

@@ -48,6 +48,23 @@ typedef struct adcgs_option_table {
 /** Appends a group of n options. More than ADCGS_OPTIONS_MAX are a defect of the program, which then ends with exit status 1. */
 void adcgs_options_add(adcgs_option_table *table, const adcgs_option *group, size_t n);
 
+typedef enum adcgs_option_relation {
+    ADCGS_OPTION_EXCLUDES,  /**< none of the options with any of the others */
+    ADCGS_OPTION_APART,     /**< at most one of the options */
+    ADCGS_OPTION_NEEDS,     /**< the options with at least one of the others */
+    ADCGS_OPTION_GOES_WITH, /**< the options with each other and the others only; no others: alone */
+} adcgs_option_relation;
+
+/**
+ * A rule for options that go together: names without dashes, separated by commas. adcgs_cli_parse() reports the first broken rule
+ * in one form for all programs: "--a and --b exclude --c". A name that is no option is a defect of the program.
+ */
+typedef struct adcgs_option_rule {
+    const char *options;
+    adcgs_option_relation relation;
+    const char *others; /**< NULL: none */
+} adcgs_option_rule;
+
 /**
  * A program. --help (-h) and --version (-V) are added automatically, and --quiet (-q) if quiet is set. --completion alone, which
  * the help does not list, prints the table for the shell (cli/completion.h).
@@ -58,7 +75,9 @@ typedef struct adcgs_cli {
     const char *summary;  /**< purpose of the program, one sentence */
     const char *details;  /**< printed after the options; may be NULL */
     const adcgs_option *options;
-    size_t n_options; /**< at most ADCGS_OPTIONS_MAX */
+    size_t n_options;               /**< at most ADCGS_OPTIONS_MAX */
+    const adcgs_option_rule *rules; /**< in the order of their checks; may be NULL */
+    size_t n_rules;
     int min_operands, max_operands;
     int *quiet;                       /**< set to 1 by --quiet, which suppresses progress and remarks; NULL: no such option */
     const char *const *operand_words; /**< words of the first operand, ended by NULL, for completion; NULL: it is a file */

@@ -178,7 +178,7 @@ differ own whole "lambda changes nothing"
 expect 4 "other options" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --seed 2 --resume "$dir/begin"
 expect 2 "lambda has no effect" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --without rate
 expect 2 "lambda has no effect" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_start=1,prune_units_at=1
-expect 2 "either -o FILE or --beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" -o "$dir/x.adcgs"
+expect 2 "output and --beginning exclude each other" ./adcgs-enc "$scene" --beginning "$dir/x.begin" -o "$dir/x.adcgs"
 
 # Stages left out. A stream contains nothing that the scene does not need.
 # After so few iterations motion develops only if anchors are not tied to their neighbours.

@@ -53,7 +53,7 @@ cmp "$dir/one.adcgs" "$dir/join.adcgs" || bad "another stream than that of one p
 [ "$(find "$dir" -name 'plan*' | sed 's|.*/||' | sort | xargs)" = "plan.1.adcgs plan.2.adcgs plan.3.adcgs plan.json" ] ||
     bad "other files remain: $(find "$dir" -name 'plan*' | xargs)"
 expect 2 "is an input" ./adcgs-join "$plan" -o "$dir/plan.2.adcgs"
-expect 2 "either -o" ./adcgs-join "$plan" -o "$dir/x" --list
+expect 2 "output and --list exclude each other" ./adcgs-join "$plan" -o "$dir/x" --list
 
 # Errors and their places; everything else stays unchanged.
 cp "$dir/plan.2.adcgs" "$dir/good"

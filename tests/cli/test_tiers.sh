@@ -61,6 +61,6 @@ expect 2 "excludes" $dec "$whole" --budget 40k --splats "$dir/none.ply"
 expect 2 "excludes" $dec "$whole" --play --tiers 2
 expect 2 "1 to 8" $dec "$whole" --md5 --tiers 9
 expect 2 "" $info "$whole" --bytes 0 -o "$dir/none"
-expect 2 "need each other" $info "$whole" --bytes 40k
-expect 2 "excludes options other" $info "$whole" --bytes 40k -o "$dir/none" --check
+expect 2 "bytes needs --output" $info "$whole" --bytes 40k
+expect 2 "check and --repair exclude other" $info "$whole" --bytes 40k -o "$dir/none" --check
 exit $failed

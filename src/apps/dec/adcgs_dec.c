@@ -330,6 +330,8 @@ int main(int argc, char **argv)
                                       "4 invalid stream, 5 unsupported.",
                            .options = options.rows,
                            .n_options = options.n,
+                           .rules = adcgs_dec_rules,
+                           .n_rules = ADCGS_DEC_RULES,
                            .min_operands = 1,
                            .max_operands = 1,
                            .quiet = &s.quiet};

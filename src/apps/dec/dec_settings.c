@@ -142,6 +142,26 @@ void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option_table *options)
     add_program_options(options, s);
 }
 
+#define FORMATS "format,half,float,linear,bits,alpha,depth,codec,crf,bitrate,codec-options,sound,beside"
+
+const adcgs_option_rule adcgs_dec_rules[ADCGS_DEC_RULES] = {
+    {"tiers", ADCGS_OPTION_EXCLUDES, "play,answer"},
+    {"budget", ADCGS_OPTION_EXCLUDES, "tiers,play,answer,conceal,splats,cameras,beside"},
+    {"play", ADCGS_OPTION_EXCLUDES, "output," FORMATS ",splats,cameras,md5,verify,answer,frametimes"},
+    {"script", ADCGS_OPTION_NEEDS, "play"},
+    {"half,float", ADCGS_OPTION_APART, NULL},
+    {"answer", ADCGS_OPTION_GOES_WITH, "layers,conceal,strict,threads,cpu"},
+    {"splats", ADCGS_OPTION_GOES_WITH, "f-rest,time,layers,tiers,conceal,strict,threads,cpu"},
+    {"f-rest", ADCGS_OPTION_NEEDS, "splats"},
+    {FORMATS, ADCGS_OPTION_NEEDS, "output"},
+    {"sound-offset", ADCGS_OPTION_NEEDS, "sound"},
+    {"crf,bitrate", ADCGS_OPTION_APART, NULL},
+    {"fit,fill", ADCGS_OPTION_NEEDS, "size"},
+    {"fit,fill", ADCGS_OPTION_APART, NULL},
+    {"bits", ADCGS_OPTION_EXCLUDES, "half,float"},
+    {"beside", ADCGS_OPTION_EXCLUDES, "alpha,depth,md5,verify,frametimes"},
+};
+
 /** Reports a concealed fault. */
 static void report_fault(void *user, adcgs_log_level level, const char *text)
 {
@@ -153,38 +173,6 @@ static void report_fault(void *user, adcgs_log_level level, const char *text)
 int adcgs_dec_has_style(const adcgs_dec_settings *s)
 {
     return s->video.codec || s->video.has_crf || s->video.bit_rate || s->video.options || s->video.sound;
-}
-
-/** True if an option for the format of frames is given. */
-static int shapes_output(const adcgs_dec_settings *s)
-{
-    return s->format || s->half || s->use_float || s->linear || s->bits || s->alpha || s->depth || s->beside ||
-           adcgs_dec_has_style(s);
-}
-
-/** Checks the options for the format of frames. */
-static adcgs_status check_output(const adcgs_dec_settings *s, adcgs_error *error)
-{
-    if (shapes_output(s) && !s->output)
-        return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--format, --half, --float, --linear, --bits, --alpha, --depth, --codec, --crf, --bitrate, "
-                          "--codec-options, --sound and --beside need --output");
-    if (s->has_sound_offset && !s->video.sound)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--sound-offset needs --sound");
-    if (s->video.has_crf && s->video.bit_rate)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--crf and --bitrate exclude each other");
-    return ADCGS_OK;
-}
-
-/** Checks the options next to --play. */
-static adcgs_status check_play(const adcgs_dec_settings *s, adcgs_error *error)
-{
-    const int written = s->output || shapes_output(s) || s->splats || s->cameras;
-    if (s->play && (written || s->md5 || s->verify || s->answer || s->frametimes))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--play excludes options that write or measure frames");
-    if (s->script && !s->play)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--script needs --play");
-    return ADCGS_OK;
 }
 
 /** Parses T, A:B or N%. */
@@ -212,11 +200,6 @@ adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
     ADCGS_TRY(check_times(s, error));
     if (s->budget_text)
         ADCGS_TRY(adcgs_budget_parse(&s->budget, s->budget_text, error));
-    if (s->tiers && (s->play || s->answer))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--tiers excludes --play and --answer");
-    if (s->budget_text && (s->tiers || s->play || s->answer || s->config.conceal || s->splats || s->cameras || s->beside))
-        return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--budget excludes --tiers, --play, --answer, --conceal, --splats, --cameras and --beside");
     if (s->config.conceal && !strcmp(s->input, "-"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--conceal needs a file: standard input cannot be read twice");
     if (s->config.conceal) {
@@ -224,28 +207,9 @@ adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
         s->config.log_user = s;
     }
     s->config.on_demand = s->times || s->play; /* a whole clip is read, and checked, as a whole */
-    ADCGS_TRY(check_play(s, error));
-    if (s->half && s->use_float)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--half and --float exclude each other");
     const int frames = s->output || s->request.camera || s->request.size[0] || s->md5 || s->verify || s->frametimes;
-    if (s->answer && (frames || s->times || s->cameras))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--answer goes with --layers, --strict, --threads and --cpu only");
-    if (s->splats && (s->answer || s->cameras || frames))
-        return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--splats goes with --f-rest, --time, --layers, --strict, --threads and --cpu only");
-    if (s->rest_degree && !s->splats)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--f-rest needs --splats");
-    ADCGS_TRY(check_output(s, error));
-    if ((s->fit || s->request.fill) && !s->request.size[0])
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fit and --fill need --size");
-    if (s->fit && s->request.fill)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fit and --fill exclude each other");
     if (s->bits % 8)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits %d: expected 8 or 16", s->bits);
-    if (s->bits && (s->half || s->use_float))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits excludes --half and --float");
-    if (s->beside && (s->alpha || s->depth || s->md5 || s->verify || s->frametimes))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--beside excludes --alpha, --depth, --md5, --verify and --frametimes");
     if (!s->output && !s->md5 && !s->verify && !s->frametimes && !s->answer && !s->splats && !s->cameras && !s->play)
         return adcgs_fail(error, ADCGS_ERR_USAGE,
                           "no output: give -o TARGET, --md5, --verify, --frametimes, --splats, --cameras, --answer or --play");

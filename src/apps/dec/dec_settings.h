@@ -27,7 +27,10 @@ typedef struct adcgs_dec_settings {
 
 /** Fills the table of options, in the order of the help, with targets in the settings. */
 void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option_table *options);
-/** Checks the rules that the table cannot express, and sets the derived settings. */
+#define ADCGS_DEC_RULES 15
+/** Options that go together. */
+extern const adcgs_option_rule adcgs_dec_rules[ADCGS_DEC_RULES];
+/** Checks the rules that the tables cannot express, and sets the derived settings. */
 adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error);
 /** Replaces a scene that --sound names by its sound, if it has one, and takes over the sound's time. */
 adcgs_status adcgs_dec_find_sound(adcgs_dec_settings *s, adcgs_error *error);

@@ -189,59 +189,24 @@ static void list_options(adcgs_option_table *out, adcgs_enc_options *o, const ch
 
 /* ---- Rules ---- */
 
-/** A rule for options that go together, if they break it, and its message. */
-typedef struct rule {
-    int is_broken;
-    const char *message;
-} rule;
+static const adcgs_option_rule option_rules[] = {
+    {"cut", ADCGS_OPTION_NEEDS, "plan"},
+    {"output,beginning", ADCGS_OPTION_APART, NULL},
+    {"lambda,size,psnr", ADCGS_OPTION_APART, NULL},
+    {"finish", ADCGS_OPTION_EXCLUDES, "resume,beginning,checkpoint,segment,live,time-limit"},
+    {"live", ADCGS_OPTION_EXCLUDES, "size,psnr,beginning,uncompressed,time-limit,frames,fps,checkpoint,dataset,or-whole,fade"},
+    {"delay", ADCGS_OPTION_NEEDS, "live"},
+    {"key", ADCGS_OPTION_NEEDS, "segment,plan,live"},
+    {"fade", ADCGS_OPTION_NEEDS, "segment,plan"},
+    {"or-whole", ADCGS_OPTION_NEEDS, "segment"},
+    {"segment", ADCGS_OPTION_EXCLUDES, "size,beginning,uncompressed,time-limit"},
+};
 
-/** Reports the first broken rule. Returns like adcgs_enc_parse(). */
-static int check_rules(const adcgs_cli *cli, const rule *rules, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        if (rules[i].is_broken)
-            return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s", rules[i].message);
-    return -1;
-}
-
-/** Checks the options for the result of the run, and for the state that it begins with. */
-static int check_result(const adcgs_cli *cli, const adcgs_enc_options *o)
-{
-    const rule rules[] = {
-        {o->has_cut, "--cut needs --plan"},
-        {o->output && o->beginning, "give either -o FILE or --beginning FILE"},
-        {!o->output && !o->beginning, "no output: give -o FILE"},
-        {o->has_lambda + o->has_size + o->has_psnr > 1, "--lambda, --size and --psnr exclude each other"},
-        {o->finish && (o->resume || o->beginning || o->checkpoint || o->has_segment || o->live || o->time_limit > 0),
-         "--finish excludes --resume, --beginning, --checkpoint, --segment, --live and --time-limit"},
-    };
-    return check_rules(cli, rules, ADCGS_COUNTOF(rules));
-}
-
-/** Checks the options for segments of a scene that is complete. */
-static int check_segments(const adcgs_cli *cli, const adcgs_enc_options *o)
-{
-    const rule rules[] = {
-        {o->has_delay, "--delay needs --live"},
-        {o->has_key && !o->has_segment, "--key needs --segment"},
-        {o->has_fade && !o->has_segment, "--fade needs --segment"},
-        {o->or_whole && !o->has_segment, "--or-whole needs --segment"},
-        {o->has_segment && (o->has_size || o->beginning || o->uncompressed || o->time_limit > 0),
-         "--segment excludes --size, --beginning, --uncompressed and --time-limit"},
-    };
-    return check_rules(cli, rules, ADCGS_COUNTOF(rules));
-}
-
-/** Checks the options that --live excludes. Returns like adcgs_enc_parse(). */
+/** Checks the values of options with --live. Returns like adcgs_enc_parse(). */
 static int check_live(const adcgs_cli *cli, adcgs_enc_options *o)
 {
     if (!o->has_segment)
         o->segment = ADCGS_ENC_LIVE_SEGMENT;
-    if (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0 || o->frames || o->fps ||
-        o->checkpoint || o->dataset || o->or_whole || o->has_fade)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
-                               "--live excludes --size, --psnr, --beginning, --uncompressed, --time-limit, "
-                               "--frames, --fps, --checkpoint, --dataset, --or-whole and --fade");
     if (o->has_delay && o->delay <= o->segment)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
                                "--delay %g: a segment of %g s is trained after its end is filmed: give a "
@@ -285,6 +250,8 @@ int adcgs_enc_parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     cli->options = options.rows;
     list_options(&options, o, names);
     cli->n_options = options.n;
+    cli->rules = option_rules;
+    cli->n_rules = ADCGS_COUNTOF(option_rules);
     cli->quiet = &o->quiet;
     const adcgs_enc_options before = *o;
     int first, code = adcgs_cli_parse(cli, argc, argv, &first);
@@ -302,8 +269,7 @@ int adcgs_enc_parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     o->scene = argv[first];
     if (o->plan) /* adcgs_enc_plan_check() has checked the options */
         return -1;
-    code = check_result(cli, o);
-    if (code >= 0)
-        return code;
-    return o->live ? check_live(cli, o) : check_segments(cli, o);
+    if (!o->output && !o->beginning)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "no output: give -o FILE");
+    return o->live ? check_live(cli, o) : -1;
 }

@@ -255,6 +255,7 @@ int main(int argc, char **argv)
     adcgs_option_table options = {.n = 0};
     adcgs_config_init(&s.config, sizeof s.config);
     list_options(&options, &s);
+    static const adcgs_option_rule rules[] = {{"beside", ADCGS_OPTION_NEEDS, "images"}};
     const adcgs_cli cli = {.program = "adcgs-eval",
                            .operands = "FILE SCENE",
                            .summary = "Render the views of a scene from a stream and compare them with its images.",
@@ -262,6 +263,8 @@ int main(int argc, char **argv)
                                       "Exit status: 0 done, 2 usage, 3 input or output, 4 invalid data, 5 unsupported.",
                            .options = options.rows,
                            .n_options = options.n,
+                           .rules = rules,
+                           .n_rules = ADCGS_COUNTOF(rules),
                            .min_operands = 2,
                            .max_operands = 2,
                            .quiet = &s.quiet};
@@ -272,8 +275,6 @@ int main(int argc, char **argv)
     if (s.crop && strcmp(s.crop, "points") && parse_box(s.crop, &s.box))
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE,
                                "--crop %.100s: expected points, or X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1 and Z0 < Z1", s.crop);
-    if (s.beside && !s.images)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--beside needs --images");
     if (s.metrics && adcgs_eval_parse_metrics(s.metrics, &s.measure))
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--metrics %.100s: expected " ADCGS_EVAL_METRICS, s.metrics);
     if (s.json && s.csv && !strcmp(s.csv, "-"))

@@ -273,11 +273,18 @@ int main(int argc, char **argv)
          &s.has_bytes},
         {"output", 'o', ADCGS_OPTION_FILE, &s.output, 0, 0, "FILE", "file that --bytes writes", NULL, NULL},
     };
+    static const adcgs_option_rule rules[] = {
+        {"why", ADCGS_OPTION_GOES_WITH, NULL},          {"points", ADCGS_OPTION_GOES_WITH, NULL},
+        {"check,repair", ADCGS_OPTION_GOES_WITH, NULL}, {"bytes", ADCGS_OPTION_NEEDS, "output"},
+        {"output", ADCGS_OPTION_NEEDS, "bytes"},        {"bytes,output", ADCGS_OPTION_GOES_WITH, NULL},
+    };
     const adcgs_cli cli = {.program = "adcgs-info",
                            .operands = "FILE|URL|-",
                            .summary = "Print the contents of an adcgs stream and the bytes of its parts.",
                            .options = options,
                            .n_options = ADCGS_COUNTOF(options),
+                           .rules = rules,
+                           .n_rules = ADCGS_COUNTOF(rules),
                            .min_operands = 1,
                            .max_operands = 1};
     adcgs_error error = {ADCGS_OK, ""};
@@ -287,16 +294,6 @@ int main(int argc, char **argv)
     adcgs_info_report r = {.trace = 0};
     s.input = argv[first];
     r.trace = s.trace && !s.json;
-    if (s.why && (s.json || s.bits || s.trace || s.digest || s.points || s.check || s.repair || s.has_bytes))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--why excludes other options");
-    if (s.points && (s.json || s.bits || s.trace || s.digest))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--points excludes other options");
-    if ((s.check || s.repair) && (s.json || s.bits || s.trace || s.digest || s.points))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--check and --repair exclude other options");
-    if (s.has_bytes != (s.output != NULL))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--bytes and --output need each other");
-    if (s.has_bytes && (s.json || s.bits || s.trace || s.digest || s.points || s.check || s.repair))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--bytes excludes options other than --output");
     if (s.check || s.repair)
         return check(&cli, &s, &error);
     adcgs_status status = read_report(&r, &s, &error);

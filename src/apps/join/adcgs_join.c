@@ -160,6 +160,7 @@ static const adcgs_cli program = {
 /** Returns -1 to continue, else the exit code. */
 static int parse(adcgs_cli *cli, join_options *o, int argc, char **argv)
 {
+    static const adcgs_option_rule rules[] = {{"output,list", ADCGS_OPTION_APART, NULL}};
     const adcgs_option options[] = {
         {"output", 'o', ADCGS_OPTION_FILE, &o->output, 0, 0, "FILE", "stream to write", NULL, NULL},
         {"list", 0, ADCGS_OPTION_FLAG, &o->list, 0, 0, NULL,
@@ -173,14 +174,16 @@ static int parse(adcgs_cli *cli, join_options *o, int argc, char **argv)
     int first;
     cli->options = options;
     cli->n_options = ADCGS_COUNTOF(options);
+    cli->rules = rules;
+    cli->n_rules = ADCGS_COUNTOF(rules);
     cli->quiet = &o->quiet;
     const int code = adcgs_cli_parse(cli, argc, argv, &first);
     cli->n_options = 0; /* options is local to this function */
     if (code >= 0)
         return code;
     o->plan = argv[first];
-    if (!o->output == !o->list)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --list" : "no output: give -o FILE");
+    if (!o->output && !o->list)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "no output: give -o FILE");
     return -1;
 }
 

@@ -45,8 +45,6 @@ static adcgs_status check_settings(const settings *s, const char *path, adcgs_er
                                                                  : NULL;
     if (!path && needs)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: needs a scene: name its FILE", needs);
-    if (s->has_sound_offset && !s->sound)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--sound-offset: needs a sound: name it with --sound FILE");
     const char *colour = s->background;
     if (colour && (*colour != '#' || strlen(colour) != 7 || strspn(colour + 1, "0123456789abcdefABCDEF") != 6))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--background %.40s: expected a colour as #rrggbb", colour);
@@ -253,6 +251,7 @@ int main(int argc, char **argv)
     adcgs_option_table options = {.n = 0};
     add_view_options(&options, &s);
     add_page_options(&options, &s);
+    static const adcgs_option_rule rules[] = {{"sound-offset", ADCGS_OPTION_NEEDS, "sound"}};
     const adcgs_cli cli = {.program = "adcgs-share",
                            .operands = "[FILE]",
                            .summary = "Make a page for browsers of a stream: one file with the decoder and the scene.",
@@ -261,6 +260,8 @@ int main(int argc, char **argv)
                                       "Exit status: 0 done, 2 usage, 3 input or output, 4 invalid stream or page, 5 unsupported.",
                            .options = options.rows,
                            .n_options = options.n,
+                           .rules = rules,
+                           .n_rules = ADCGS_COUNTOF(rules),
                            .min_operands = 0,
                            .max_operands = 1,
                            .quiet = &s.quiet};

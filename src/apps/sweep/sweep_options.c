@@ -145,18 +145,11 @@ static int parse_lists(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
 }
 
 /** Checks that a sweep can be made of the options. Returns -1 to continue. */
-static int check_options(const adcgs_cli *cli, const adcgs_sweep_request *request, const lists *l, int has_jobs)
+static int check_options(const adcgs_cli *cli, const adcgs_sweep_request *request, const lists *l)
 {
     const adcgs_sweep *const sweep = &request->sweep;
     if (!sweep->directory || (!l->lambdas && !sweep->ablation))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "expected -o DIR and --lambda A,B,C; see --help");
-    if ((sweep->against || sweep->tables) && !l->lambdas)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: expected --lambda, too: there is no curve to compare",
-                               sweep->against ? "--against" : "--add");
-    if (request->list && request->run)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--list and --run exclude each other");
-    if (has_jobs && (request->list || request->run))
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--jobs has no effect with --%s", request->list ? "list" : "run");
     return -1;
 }
 
@@ -305,36 +298,36 @@ static size_t list_options(adcgs_option out[ADCGS_SWEEP_OPTIONS], adcgs_sweep_re
     return ADCGS_COUNTOF(table);
 }
 
-/** Requires --collect alone, since its folder stores the rest. */
-static int check_alone(const adcgs_cli *cli, const adcgs_sweep_request *r, int operands)
-{
-    return operands || r->words.n || r->sweep.directory || r->list || r->run || r->sweep.resume
-               ? adcgs_cli_error(cli, ADCGS_ERR_USAGE,
-                                 "--collect excludes other options and operands: its folder stores "
-                                 "them")
-               : -1;
-}
-
 int adcgs_sweep_parse(adcgs_cli *cli, adcgs_sweep_request *request, int argc, char **argv)
 {
+    static const adcgs_option_rule rules[] = {
+        {"collect", ADCGS_OPTION_GOES_WITH, NULL}, /* its folder stores the others */
+        {"against,add", ADCGS_OPTION_NEEDS, "lambda"},
+        {"list,run", ADCGS_OPTION_APART, NULL},
+        {"jobs", ADCGS_OPTION_EXCLUDES, "list,run"},
+    };
     given g = {.dataset = 0};
     adcgs_option options[ADCGS_SWEEP_OPTIONS];
     int first = 0;
     request->jobs = 1;
     cli->options = options;
     cli->n_options = list_options(options, request, &g);
+    cli->rules = rules;
+    cli->n_rules = ADCGS_COUNTOF(rules);
     const int leave = adcgs_cli_parse(cli, argc, argv, &first);
     take_words(&request->words, options, cli->n_options);
     cli->n_options = 0; /* options is local to this function */
     if (leave >= 0)
         return leave;
+    if (request->collect && argc > first)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--collect excludes operands: its folder stores them");
     if (request->collect)
-        return check_alone(cli, request, argc - first);
+        return -1;
     if (argc == first)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "expected %s; try '%s --help'", cli->operands, cli->program);
     request->sweep.scene = argv[first];
     request->sweep.dataset = g.has_dataset ? adcgs_dataset_names[g.dataset] : NULL;
-    int bad = check_options(cli, request, &g.l, g.has_jobs);
+    int bad = check_options(cli, request, &g.l);
     if (bad < 0)
         bad = parse_lists(cli, &g.l, &request->sweep);
     return bad < 0 ? check_settings(cli, &request->sweep) : bad;
