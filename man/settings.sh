@@ -6,13 +6,10 @@
 set -eu
 enc=$1 page=$2
 case $page in *.md) format=md ;; *) format=man ;; esac
-# Settings that users change; doc/settings.md lists them first.
-common="iterations batch seed scale lambda k max_anchors detail_anchors tiers matching_frames lifetimes bodies gains black_levels trial_share
-    ssim_weight dropout"
 
 entries=$(for preset in draft fast medium slow paper; do
     "$enc" --preset $preset --set list
-done | awk -v format=$format -v common="$(echo $common)" '
+done | awk -v format=$format '
     function upper(text) { return toupper(substr(text, 1, 1)) substr(text, 2) }
     function escape(text) { gsub(/-/, "\\-", text); return text }
 
@@ -56,24 +53,14 @@ done | awk -v format=$format -v common="$(echo $common)" '
         printf "| `%s` | %s%s | %s | %s | %s |\n", name[i], value[name[i], "fast"], others(i), range[i], affects(i), help[i]
     }
 
-    function print_md(i, j, n_common, list, is_common, at) {
-        n_common = split(common, list, " ")
-        print_heading("## Common settings")
-        for (j = 1; j <= n_common; j++) {
-            if (!(list[j] in index_of)) {
-                print "settings.sh: no setting " list[j] >"/dev/stderr"
-                exit 1
-            }
-            is_common[list[j]] = 1
-            print_row(index_of[list[j]])
-        }
-        print "\n## Research settings"
+    function print_md(i, title, is_research) {
         for (i = 1; i <= n; i++) {
-            if (name[i] in is_common)
-                continue
-            if (titles[i] != at)
-                print_heading("### " titles[i])
-            at = titles[i]
+            title = titles[i]
+            is_research = sub(/^Research: /, "", title)
+            if (is_research && titles[i - 1] !~ /^Research: /)
+                print "\n## Research settings"
+            if (titles[i] != titles[i - 1])
+                print_heading((is_research ? "### " : "## ") title)
             print_row(i)
         }
         print ""

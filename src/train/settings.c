@@ -346,12 +346,16 @@ void adcgs_train_list(const adcgs_train_config *config, FILE *file)
             "Settings of preset %s: name, value, effects, meaning, range.\n"
             "S: speed, B: bytes of the file, Q: quality, M: memory in training.\n",
             config->preset);
+    fprintf(file, "\nCommon settings\n");
+    for (const adcgs_setting *s = adcgs_settings; s->name; s++)
+        if (s->class == ADCGS_SETTING_COMMON)
+            list_one(s, config, file);
     int group = -1;
     for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
-        if (s->group == ADCGS_SETTING_SWITCHES)
+        if (s->group == ADCGS_SETTING_SWITCHES || s->class == ADCGS_SETTING_COMMON)
             continue;
         if ((int)s->group != group)
-            fprintf(file, "\n%s\n", titles[s->group]);
+            fprintf(file, "\nResearch: %s\n", titles[s->group]);
         group = (int)s->group;
         list_one(s, config, file);
     }

@@ -36,6 +36,9 @@ typedef enum adcgs_setting_group {
 /** The effects of a setting, as bits; definition. */
 enum { ADCGS_AFFECTS_SPEED = 1, ADCGS_AFFECTS_BYTES = 2, ADCGS_AFFECTS_QUALITY = 4, ADCGS_AFFECTS_MEMORY = 8 };
 
+/** Users change common settings, at most 20. Research settings are for experiments on the method. */
+typedef enum adcgs_setting_class { ADCGS_SETTING_RESEARCH, ADCGS_SETTING_COMMON } adcgs_setting_class;
+
 /** From when a setting binds a run. Before, a run may continue from a checkpoint with another value. */
 typedef enum adcgs_setting_fixed { ADCGS_FIXED_ALWAYS, ADCGS_FIXED_WITH_LAMBDA, ADCGS_FIXED_WITH_ROUNDING } adcgs_setting_fixed;
 
@@ -43,6 +46,7 @@ typedef struct adcgs_setting {
     const char *name;
     adcgs_setting_kind kind; /**< of the field */
     size_t offset;           /**< of the field in the configuration */
+    adcgs_setting_class class;
     adcgs_setting_group group;
     adcgs_setting_fixed fixed;
     int affects;
@@ -117,7 +121,7 @@ adcgs_status adcgs_train_check(const adcgs_train_config *config, adcgs_error *er
  * too.
  */
 adcgs_status adcgs_train_changes(const adcgs_train_config *config, adcgs_buffer *text, adcgs_error *error);
-/** Writes a table of all settings with names: value, range, effects, meaning. */
+/** Writes a table of all settings with names: value, range, effects, meaning. Common settings are first. */
 void adcgs_train_list(const adcgs_train_config *config, FILE *file);
 /** Finds the value of a setting in a list for adcgs_train_set() or in a stream's metadata; NULL if it is missing. */
 const char *adcgs_setting_in_list(const char *list, const char *name);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * All settings, one row each: name and field, effects, range, values in the presets draft, fast, medium, slow and paper, and one
- * line of help: a noun phrase with unit and default. Lists, the man page and doc/settings.md have the same order. Preset paper
- * follows the sizes and the schedule of the published method (Huang et al. 2025, ADC-GS, IJCAI; section 4.1, appendix A), without
- * coarse-to-fine.
+ * line of help: a noun phrase with unit and default. COMMON rows are for users, others for research. Lists, the man page and
+ * doc/settings.md have the same order. Preset paper follows the sizes and the schedule of the published method (Huang et al.
+ * 2025, ADC-GS, IJCAI; section 4.1, appendix A), without coarse-to-fine.
  */
 #include "train/settings.h"
 
@@ -33,9 +33,12 @@ const char *const adcgs_train_presets[] = {"draft", "fast", "medium", "slow", "p
 #define BUT_PAPER(x, paper) { x, x, x, x, paper }
 
 /* A row: most settings bind a run from the start. */
-#define ROW(name, field, group, fixed, affects, min, max, ...) \
-    { name, KIND(field), AT(field), ADCGS_SETTING_##group, ADCGS_FIXED_##fixed, affects, min, max, __VA_ARGS__ }
+#define ENTRY(class, name, field, group, fixed, affects, min, max, ...)                                                      \
+    { name, KIND(field), AT(field), ADCGS_SETTING_##class, ADCGS_SETTING_##group, ADCGS_FIXED_##fixed, affects, min, max,      \
+      __VA_ARGS__ }
 /* clang-format on */
+#define ROW(...) ENTRY(RESEARCH, __VA_ARGS__)
+#define COMMON(name, field, group, ...) ENTRY(COMMON, #name, field, group, ALWAYS, __VA_ARGS__)
 #define RUN(name, ...) ROW(#name, name, RUN, ALWAYS, __VA_ARGS__)
 #define LOSS(name, ...) ROW(#name, name, LOSS, ALWAYS, __VA_ARGS__)
 #define MODEL(name, ...) ROW(#name, params.name, MODEL, ALWAYS, __VA_ARGS__)
@@ -46,9 +49,11 @@ const char *const adcgs_train_presets[] = {"draft", "fast", "medium", "slow", "p
 #define SWITCH(name, fixed, help) ROW(#name, name, SWITCHES, fixed, 0, 0, 1, ALL(0), help)
 
 const adcgs_setting adcgs_settings[] = {
-    RUN(iterations, S | Q, 10, 1e7, {3000, 20000, 40000, 100000, 80000}, "iterations of the run, each one optimiser step"),
-    RUN(batch, S | Q | M, 1, ADCGS_TREE_MOST, ALL(1), "images of an iteration, whose mean gradient gives one optimiser step"),
-    RUN(seed, 0, 0, 1e15, ALL(1), "seed of every random choice"),
+    COMMON(iterations, iterations, RUN, S | Q, 10, 1e7, {3000, 20000, 40000, 100000, 80000},
+           "iterations of the run, each one optimiser step"),
+    COMMON(batch, batch, RUN, S | Q | M, 1, ADCGS_TREE_MOST, ALL(1),
+           "images of an iteration, whose mean gradient gives one optimiser step"),
+    COMMON(seed, seed, RUN, 0, 0, 1e15, ALL(1), "seed of every random choice"),
     RUN(lr_scale_anchors, Q, 0, 100, ALL(1), "factor of the learning rates of features, extents, colours and hyperprior"),
     RUN(lr_scale_prediction, Q, 0, 100, ALL(1), "factor of the learning rate of F_theta"),
     RUN(lr_scale_motion, Q, 0, 100, ALL(1), "factor of the learning rates of F_omega, F_varpi and the time table"),
@@ -57,12 +62,13 @@ const adcgs_setting adcgs_settings[] = {
         "0 or 1: a duplicated image is trained at the timestamp of the image that it repeats"),
     RUN(exposure_step_compensation, Q, 0, 1, ALL(0),
         "0 or 1: steps in the brightness or tint of a camera's images are evened out"),
-    RUN(trial_share, S | Q, 0, 1, BUT_PAPER(0.02, 0),
-        "iterations of each trial before the run, relative to the run's; below 100 iterations: no trials"),
-    RUN(gains, Q, 0, 1, ALL(1), "0 or 1: a gain for each camera, and for each image of a static scene, during training"),
-    RUN(black_levels, Q, 0, 1, ALL(1), "0 or 1: a black level for each camera during training"),
-    RUN(scale, S | Q | M, 1, 64, ALL(1),
-        "divisor of the images' width and height; by default larger for images of over 1600 pixels"),
+    COMMON(trial_share, trial_share, RUN, S | Q, 0, 1, BUT_PAPER(0.02, 0),
+           "iterations of each trial before the run, relative to the run's; below 100 iterations: no trials"),
+    COMMON(gains, gains, RUN, Q, 0, 1, ALL(1),
+           "0 or 1: a gain for each camera, and for each image of a static scene, during training"),
+    COMMON(black_levels, black_levels, RUN, Q, 0, 1, ALL(1), "0 or 1: a black level for each camera during training"),
+    COMMON(scale, scale, RUN, S | Q | M, 1, 64, ALL(1),
+           "divisor of the images' width and height; by default larger for images of over 1600 pixels"),
 
     /*
      * Rate in the loss: Balle et al. 2017, End-to-end optimized image compression, ICLR. Choice of levels by rate and distortion:
@@ -71,14 +77,15 @@ const adcgs_setting adcgs_settings[] = {
      * Luiten et al. 2024, Dynamic 3D Gaussians, 3DV. Scale penalty: Lombardi et al. 2021, Mixture of volumetric primitives,
      * SIGGRAPH; Lu et al. 2024, Scaffold-GS, CVPR. Dropout: Srivastava et al. 2014, JMLR 15.
      */
-    ROW("lambda", lambda, LOSS, WITH_LAMBDA, B | Q, 0, 1000, ALL(0.1),
-        "loss per mebibyte of features and networks; larger means smaller files; default times the images' contrast / 0.22"),
+    ENTRY(COMMON, "lambda", lambda, LOSS, WITH_LAMBDA, B | Q, 0, 1000, ALL(0.1),
+          "loss per mebibyte of features and networks; larger means smaller files; default times the images' contrast / 0.22"),
     LOSS(network_rate, B | Q, 0, 1000, BUT_PAPER(1, 0), "weight of the networks' bits, relative to those of features"),
     LOSS(rate_period, S | Q, 1, 1000, ALL(4),
          "interval of the groups of 64 anchors whose bits are measured in an iteration; 1: all groups"),
     LOSS(rdo_strength, B | Q, 0, 1000, ALL(0),
          "weight of bits in the choice of quantised levels, relative to lambda; 0: nearest levels"),
-    LOSS(ssim_weight, Q, 0, 1, ALL(0.2), "share of 1 - SSIM in the photometric loss; the rest is error per pixel"),
+    COMMON(ssim_weight, ssim_weight, LOSS, Q, 0, 1, ALL(0.2),
+           "share of 1 - SSIM in the photometric loss; the rest is error per pixel"),
     ROW("l2_share", l2_share, LOSS, ALWAYS, Q, 0, 1, BUT_PAPER(0.9, 0),
         "share of squares in the error per pixel, the rest is L1; by default at most 0.5 if one camera sees each frame"),
     ROW("rigidity_weight", rigidity_weight, LOSS, ALWAYS, S | Q, 0, 1000, BUT_PAPER(0.02, 0),
@@ -88,12 +95,12 @@ const adcgs_setting adcgs_settings[] = {
          "weight of the depth distortion along rays; 0.001 helps if few cameras are overfitted"),
     LOSS(distortion_period, S | Q, 1, 1000, ALL(4), "interval of evaluations of the depth distortion, iterations"),
     LOSS(tier_weight, S | B | Q, 0, 10, BUT_PAPER(0.03, 0), "weight of the photometric loss of renders without later tiers"),
-    LOSS(dropout, Q, 0, 0.9, BUT_PAPER(0.1, 0),
-         "share of primitives dropped at random until rounding, against overfitting few views"),
+    COMMON(dropout, dropout, LOSS, Q, 0, 0.9, BUT_PAPER(0.1, 0),
+           "share of primitives dropped at random until rounding, against overfitting few views"),
 
     /* Anchors: Lu et al. 2024; K primitives each, deformed by two networks: ADC-GS. eta is a hyperprior: Balle et al. 2018, ICLR.
      * Octaves of sines: Mildenhall et al. 2020, NeRF, ECCV. */
-    MODEL(k, S | B | Q | M, 1, ADCGS_K_MAX, BUT_PAPER(6, 10), "primitives per anchor"),
+    COMMON(k, params.k, MODEL, S | B | Q | M, 1, ADCGS_K_MAX, BUT_PAPER(6, 10), "primitives per anchor"),
     MODEL(n_fv, S | B | Q | M, 1, ADCGS_NV_MAX, ALL(32), "features of an anchor (f_v)"),
     MODEL(n_fg, S | B | Q | M, 0, ADCGS_NG_MAX, {0, 8, 8, 8, 16},
           "features of each primitive (f_g), a multiple of chunks; 0: none"),
@@ -103,9 +110,10 @@ const adcgs_setting adcgs_settings[] = {
     MODEL(fine_uses_fv, S | B | Q, 0, 1, ALL(1), "0 or 1: the fine deformation reads f_v"),
     MODEL(coarse_rotation, S | B | Q, 0, 1, ALL(1), "0 or 1: the coarse deformation includes rotation"),
     MODEL(adaptive_steps, S | B | Q, 0, 1, ALL(0), "0 or 1: a network predicts each anchor's quantiser steps"),
-    ROW("lifetimes", params.spans, MODEL, ALWAYS, S | B | Q, 0, 1, BUT_PAPER(1, 0),
-        "0 or 1: moving anchors have lifetimes; off if matching finds no motion"),
-    MODEL(bodies, B | Q, 0, ADCGS_BODIES_MAX, BUT_PAPER(8, 0), "maximum number of rigid bodies; as many exist as matching finds"),
+    COMMON(lifetimes, params.spans, MODEL, S | B | Q, 0, 1, BUT_PAPER(1, 0),
+           "0 or 1: moving anchors have lifetimes; off if matching finds no motion"),
+    COMMON(bodies, params.bodies, MODEL, B | Q, 0, ADCGS_BODIES_MAX, BUT_PAPER(8, 0),
+           "maximum number of rigid bodies; as many exist as matching finds"),
     MODEL(time_rows, B | Q, 0, ADCGS_TIME_ROWS_MAX, ALL(40), "rows of the time table, at most one per timestamp; 0: no motion"),
     ROW("smooth_time", params.smooth_time, MODEL, ALWAYS, Q, 0, 1, BUT_PAPER(1, 0),
         "0 or 1: a spline interpolates the time table; by default off if half of the cameras or more see each frame"),
@@ -132,13 +140,13 @@ const adcgs_setting adcgs_settings[] = {
     /* Densification: Kerbl et al. 2023; by temporal significance: ADC-GS, section 3.5. */
     ROW("start_anchors", start_anchors, ANCHORS, ALWAYS, S | Q, 1, ADCGS_ANCHORS_MAX, {600, 1000, 1000, 1000, 1000},
         "initial number of anchors; by default at least 3/4 of max_anchors with points or matched images"),
-    ROW("max_anchors", max_anchors, ANCHORS, ALWAYS, S | B | Q | M, 1, ADCGS_ANCHORS_MAX, {1200, 6000, 8000, 10000, 20000},
-        "maximum number of anchors; by default from detail_anchors"),
-    ANCHOR(detail_anchors, S | B | Q | M, 0, 10000, BUT_PAPER(50, 0),
+    COMMON(max_anchors, max_anchors, ANCHORS, S | B | Q | M, 1, ADCGS_ANCHORS_MAX, {1200, 6000, 8000, 10000, 20000},
+           "maximum number of anchors; by default from detail_anchors"),
+    COMMON(detail_anchors, detail_anchors, ANCHORS, S | B | Q | M, 0, 10000, BUT_PAPER(50, 0),
            "ratio of max_anchors, unless given, to the square root of the details per image; 0: the preset's max_anchors"),
-    ANCHOR(tiers, S | B | Q, 1, ADCGS_TIERS_MAX, BUT_PAPER(4, 1),
+    COMMON(tiers, tiers, ANCHORS, S | B | Q, 1, ADCGS_TIERS_MAX, BUT_PAPER(4, 1),
            "maximum number of tiers: sets of anchors that are sent one after the other and add detail"),
-    ANCHOR(matching_frames, S | Q, 0, ADCGS_MATCHING_FRAMES_MAX, ALL(ADCGS_MATCHING_FRAMES_MAX),
+    COMMON(matching_frames, matching_frames, ANCHORS, S | Q, 0, ADCGS_MATCHING_FRAMES_MAX, ALL(ADCGS_MATCHING_FRAMES_MAX),
            "maximum number of frames matched for first anchors and motion; 0: no matching"),
     ANCHOR(lifetime_frames, B | Q, 0.1, 1e4, ALL(3),
            "initial lifetime of an anchor before and after its own frame, in matched frames"),

@@ -55,6 +55,10 @@ static void the_table_is_sound(void **state)
         for (const adcgs_setting *other = adcgs_settings; other < s; other++)
             assert_true(other->offset != s->offset && s->group >= other->group);
     }
+    size_t common = 0;
+    for (const adcgs_setting *s = adcgs_settings; s->name; s++)
+        common += s->class == ADCGS_SETTING_COMMON;
+    assert_true(common >= 10 && common <= 20);
     for (int i = 0; i < ADCGS_PRESETS; i++) {
         const adcgs_train_config c = preset(adcgs_train_presets[i]);
         if (adcgs_train_check(&c, &error) != ADCGS_OK)
@@ -266,7 +270,9 @@ static void the_list_tells_all(void **state)
     }
     for (const char *at = text; *at; at++)
         lines += at[0] == '\n' && at[1] == ' ';
-    assert_true(lines > 50 && strstr(text, "\n  max_anchors                321 ") && strstr(text, "preset draft"));
+    assert_true(lines > 50 && strstr(text, "\nCommon settings\n  iterations ") && strstr(text, "\nResearch: Run\n"));
+    assert_true(strstr(text, "\n  max_anchors ") < strstr(text, "\nResearch: "));
+    assert_true(strstr(text, "\n  max_anchors                321 ") && strstr(text, "preset draft"));
     free(text);
 }
 
