@@ -66,12 +66,10 @@ typedef struct adcgs_train_config {
     int rate_period;    /**< rate is measured on every n-th group of anchors */
     float rdo_strength; /**< loss per bit when values are frozen, relative to training's; 0: the nearest levels */
     float ssim_weight, l2_share;
-    float rigidity_weight;   /**< of the rigidity energy between neighbours; 0 if several views share a timestamp */
-    float scale_reg_weight;  /**< of the scale penalty of primitives */
-    float distortion_weight; /**< of the depth distortion along rays */
-    int distortion_period;   /**< iterations between its evaluations */
-    float tier_weight;       /**< of the loss of renders without the later tiers */
-    float dropout;           /**< share of primitives dropped at random until rounding, against overfitting few views */
+    float rigidity_weight;  /**< of the rigidity energy between neighbours; 0 if several views share a timestamp */
+    float scale_reg_weight; /**< of the scale penalty of primitives */
+    float tier_weight;      /**< of the loss of renders without the later tiers */
+    float dropout;          /**< share of primitives dropped at random until rounding, against overfitting few views */
     /* The model. */
     adcgs_params params; /**< time_rows is capped by the scene */
     adcgs_shape shape;

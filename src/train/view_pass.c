@@ -91,21 +91,16 @@ static adcgs_status look_at_picture(adcgs_trainer *t, double progress, uint32_t 
 }
 
 /** Adds the penalties of primitives and of their motion. */
-static adcgs_status add_prices(adcgs_trainer *t, double progress, uint32_t number, const adcgs_view *v, adcgs_deform deform,
-                               adcgs_raster_grads *grads, adcgs_error *error)
+static void add_prices(adcgs_trainer *t, double progress, adcgs_deform deform, adcgs_raster_grads *grads)
 {
     const adcgs_train_config *c = &t->config;
     if (c->scale_reg_weight > 0 && progress >= c->scale_reg_start)
         adcgs_scale_penalty(&t->pass->primitives, &t->viewpoints, c->scale_reg_weight, grads->scale);
-    if (c->distortion_weight > 0 && number % (uint32_t)c->distortion_period == 0)
-        ADCGS_TRY(adcgs_distortion_add(&t->distortion, t->raster, t->back, &t->pass->primitives, v, ADCGS_SCREEN_FILTER,
-                                       c->distortion_weight * (float)c->distortion_period, grads, NULL, error));
     t->pass->pull = NULL;
     if (c->rigidity_weight > 0 && deform && t->f->mlp[ADCGS_P_OMEGA].n) {
         adcgs_rigidity_pull(&t->rigid, t->pass, t->f, c->rigidity_weight);
         t->pass->pull = t->rigid.pull;
     }
-    return ADCGS_OK;
 }
 
 adcgs_status adcgs_view_pass(adcgs_trainer *t, double progress, uint32_t number, adcgs_train_stats *stats,
@@ -124,7 +119,7 @@ adcgs_status adcgs_view_pass(adcgs_trainer *t, double progress, uint32_t number,
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(look_at_picture(t, progress, number, &grads, result, error));
     add_stats(t, &v->view, &grads, stats);
-    ADCGS_TRY(add_prices(t, progress, number, &v->view, mode.deform, &grads, error));
+    add_prices(t, progress, mode.deform, &grads);
     adcgs_rate rate = {.total = 0};
     adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)adcgs_cost_of_bit(t) : 0, c->rate_period,
                         (int)(turn % (uint32_t)c->rate_period), rated ? &rate : NULL);

@@ -168,7 +168,7 @@ quant_noise_start=0,rate_start=0,fine_start=0,prune_units_at=0,prune_units_again
 quant_noise_start=2,rate_start=2,fine_start=2,prune_units_at=2,prune_units_again=2,prune_at=2,tiers_start=2,quant_round_start=2,freeze_start=2
     good "no threshold" 18 "$scene" $short --set densify_threshold=0,densify_interval=1
     good "nothing but SSIM" 15 "$scene" $short --set ssim_weight=1
-    good "heavy penalties" 12 "$scene" $short --set rigidity_weight=1000,scale_reg_weight=1000,distortion_weight=1000,tier_weight=10
+    good "heavy penalties" 12 "$scene" $short --set rigidity_weight=1000,scale_reg_weight=1000,tier_weight=10
     refused "one iteration" 2 "--iterations 1: expected a whole number from 10" "$scene" --iterations 1
     refused "nothing may stay" 4 "training diverged at iteration .* check .*settings" "$scene" $short \
         --set prune_opacity=1,min_mean_opacity=1

@@ -11,7 +11,7 @@
 #include <stdio.h>
 
 /** Format number; the first number that the walk visits, as 64 bits; definition, one more with each change. */
-enum { ADCGS_CHECKPOINT_FORMAT = 33 };
+enum { ADCGS_CHECKPOINT_FORMAT = 34 };
 
 typedef struct adcgs_checkpoint_walk {
     adcgs_buffer *out; /* storing to memory */

@@ -222,7 +222,6 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_raster_back_free(&t->back);
     adcgs_loss_free(&t->loss);
     adcgs_rigidity_clear(&t->rigid);
-    adcgs_distortion_clear(&t->distortion);
     adcgs_curriculum_clear(&t->curriculum);
     adcgs_exposure_clear(&t->exposure);
     adcgs_stereo_clear(&t->stereo);

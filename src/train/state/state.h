@@ -11,7 +11,6 @@
 #include "fmodel/rigidity.h"
 #include "fmodel/scale_penalty.h"
 #include "fmodel/weight_average.h"
-#include "grad/distortion.h"
 #include "grad/loss.h"
 #include "init/stereo.h"
 #include "scene/image_store.h"
@@ -75,7 +74,6 @@ typedef struct adcgs_trainer {
     adcgs_raster_back *back;
     adcgs_loss *loss;
     adcgs_rigidity rigid;
-    adcgs_distortion distortion;
     adcgs_curriculum curriculum;
     adcgs_exposure exposure;
     adcgs_viewpoints viewpoints;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The backward pass against differences of the binary64 reference, and against itself on other CPUs and threads. */
-#include "grad/distortion.h"
 #include "grad/raster.h"
 #include "unit/pixels_reference.h"
 
@@ -206,98 +205,11 @@ static void test_without_screen(void **state)
     frame_free(&f);
 }
 
-/* ---- Depth distortion ---- */
-
-/** 1 / z of a primitive of the reference. */
-static double inverse_depth(const reference_scene *r, const adcgs_view *v, uint32_t i)
-{
-    double z = v->translation[2];
-    for (int a = 0; a < 3; a++)
-        z += v->rotation[6 + a] * reference_value(r, SCENE_MEAN + a, i);
-    return 1.0 / z;
-}
-
-/**
- * The energy of distortion.h by the binary64 renderer. still: the first call of a pair, which sets the values without a gradient:
- * the mean depth, and the coverage in cover[pixels].
- */
-static double reference_distortion(reference_scene *r, const frame *f, int n, int still, double *mean, double *cover, double *rgb)
-{
-    static const float black[3] = {0.0f, 0.0f, 0.0f};
-    const double soft = (double)ADCGS_DISTORTION_SOFT * (double)ADCGS_DISTORTION_SOFT;
-    double sum = 0.0, energy = 0.0;
-    for (int i = 0; i < n; i++)
-        sum += inverse_depth(r, &f->view, (uint32_t)i) / n;
-    *mean = still ? sum : *mean;
-    for (int i = 0; i < n; i++) {
-        const double u = 1.0 - inverse_depth(r, &f->view, (uint32_t)i) / *mean, colour[3] = {u, u * u, 1.0};
-        for (uint32_t a = 0; a < 3; a++)
-            r->data[(size_t)(SCENE_COLOUR + a) * r->n + (size_t)i] = colour[a];
-    }
-    reference_render(r, &f->view, black, 0.3f, rgb);
-    for (size_t i = 0; i < f->pixels; i++) {
-        const double first = rgb[i], second = rgb[f->pixels + i], now = rgb[2 * f->pixels + i];
-        cover[i] = still ? now : cover[i];
-        energy += cover[i] * cover[i] * log(1.0 + (now * second - first * first) / (cover[i] * cover[i] * soft));
-    }
-    return energy / (double)f->pixels;
-}
-
-static void test_distortion(void **state)
-{
-    enum { N = 20 };
-    const adcgs_camera c = scene_camera(23, 18);
-    const float weight = 0.7f;
-    scene_splats s = faint_scene(N, 21);
-    frame f = frame_create(&c, 22);
-    float *grads = grads_create(s.n);
-    memset(grads, 0, (size_t)s.n * GRAD_ARRAYS * sizeof *grads);
-    const adcgs_primitives p = scene_primitives(&s);
-    const adcgs_raster_grads g = adcgs_raster_grads_of(grads, s.n);
-    adcgs_distortion distortion = {.slots = 0};
-    adcgs_raster *raster;
-    adcgs_raster_back *back;
-    double energy, mean, *cover = malloc(f.pixels * sizeof *cover), *rgb = malloc(3 * f.pixels * sizeof *rgb);
-    assert_int_equal(adcgs_raster_create(&raster, ADCGS_CPU_AUTO, NULL, NULL, NULL), ADCGS_OK);
-    assert_int_equal(adcgs_raster_back_create(&back, ADCGS_CPU_AUTO, NULL, NULL), ADCGS_OK);
-    assert_int_equal(adcgs_distortion_add(&distortion, raster, back, &p, &f.view, 0.3f, weight, &g, &energy, NULL), ADCGS_OK);
-    reference_scene r = reference_from(&s);
-    const double expected = reference_distortion(&r, &f, N, 1, &mean, cover, rgb);
-    assert_true(energy > 0.01); /* layers of a scene whose depth is half its distance */
-    assert_true(fabs(energy - expected) < 1e-3 * expected);
-    for (int array = 0; array < SCENE_COLOUR; array++) {
-        double worst = 0.0, largest = 0.0;
-        for (uint32_t i = 0; i < N; i++) {
-            double *value = r.data + (size_t)array * r.n + i, side[2];
-            const double kept = *value, h = 1e-6;
-            for (int up = 0; up < 2; up++) {
-                *value = kept + (up ? h : -h);
-                side[up] = weight * reference_distortion(&r, &f, N, 0, &mean, cover, rgb);
-            }
-            *value = kept;
-            const double by = (side[1] - side[0]) / (2.0 * h);
-            worst = fmax(worst, fabs(by - (double)grads[(size_t)array * s.n + i]));
-            largest = fmax(largest, fabs(by));
-        }
-        if (worst > 1e-3 * largest)
-            fail_msg("array %d: gradient differs by %g of at most %g", array, worst, largest);
-    }
-    adcgs_distortion_clear(&distortion);
-    adcgs_raster_back_free(&back);
-    adcgs_raster_free(&raster);
-    free(r.data);
-    free(cover);
-    free(rgb);
-    adcgs_free(NULL, grads);
-    adcgs_free(NULL, s.data);
-    frame_free(&f);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_without_screen), cmocka_unit_test(test_gradients),  cmocka_unit_test(test_gradients_limited),
-        cmocka_unit_test(test_weight),         cmocka_unit_test(test_distortion), cmocka_unit_test(test_same_everywhere),
+        cmocka_unit_test(test_without_screen), cmocka_unit_test(test_gradients),       cmocka_unit_test(test_gradients_limited),
+        cmocka_unit_test(test_weight),         cmocka_unit_test(test_same_everywhere),
     };
     return cmocka_run_group_tests_name("raster_back", tests, NULL, NULL);
 }

@@ -123,7 +123,6 @@ static adcgs_train_config run_config(uint32_t batch)
     c.freeze_start = 0.92f;
     c.average_share = 0.1f;
     assert_int_equal(adcgs_train_set(&c, "rigidity_weight=0.02", &error), ADCGS_OK);
-    c.distortion_weight = 0.001f;
     c.params.adaptive_steps = batch % 2;
     return c;
 }
