@@ -19,7 +19,8 @@ typedef struct adcgs_enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *finish, *log, *points, *set, *without, *beginning, *uncompressed;
     const char *preview, *frames, *fps, *plan;
     double lambda, psnr, time_limit, segment, key, fade, delay, cut;
-    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, fixed, live, or_whole;
+    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, fixed, live, or_whole,
+        schedule;
     int has_segment, has_key, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
     int has_fade, has_delay, has_cut;
     adcgs_time started;

@@ -15,6 +15,7 @@
 #include "train/rate/rate_target.h"
 #include "train/rate/tier_assignment.h"
 #include "train/rate/weight_steps.h"
+#include "train/stage_table.h"
 #include "train/static/prune_and_fix.h"
 #include "train/static/unit_prune.h"
 #include "train/train_views.h"
@@ -41,39 +42,12 @@ static void take_average(adcgs_trainer *t)
     adcgs_trainer_prepare_networks(t);
 }
 
-static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error *error)
+/** The last stages: values are rounded, then frozen. */
+static adcgs_status round_and_freeze(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
-    if (progress >= adcgs_train_lambda_from(c))
-        t->lambda_used = 1;
-    if (!t->fixed_unchanging && progress >= c->rate_start && !c->without_densification) {
-        t->fixed_unchanging = 1;
-        ADCGS_TRY(adcgs_fix_unchanging(t, error));
-    }
-    if (!t->motion_tested && progress >= c->prune_at && !c->without_rate) { /* motion is found late, so not before prune_at */
-        t->motion_tested = 1;
-        if (t->iteration >= WEIGH_AFTER)
-            ADCGS_TRY(adcgs_test_motion_gain(t, error));
-    }
-    if (t->units_pruned < 2 && progress >= (t->units_pruned ? c->prune_units_again : c->prune_units_at) && !c->without_rate) {
-        t->units_pruned++;
-        adcgs_drop_floaters(t);
-        if (t->iteration >= ADCGS_UNITS_AFTER)
-            ADCGS_TRY(adcgs_prune_units(t, error));
-    }
-    if (!t->pruned && progress >= c->prune_at) {
-        t->pruned = 1;
-        if (!c->without_densification)
-            ADCGS_TRY(adcgs_prune_and_fix(t, error));
-    }
-    if (!t->tiered && progress >= c->tiers_start && t->pruned && !t->f->follows) {
-        t->tiered = 1;
-        ADCGS_TRY(adcgs_tiers_assign(t, error));
-    }
-    if (!t->quantise || c->without_rounding)
-        return ADCGS_OK;
     const adcgs_quantise_options means = {.cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor};
-    if (!t->rounding && progress >= c->quant_round_start) {
+    if (!t->rounding && adcgs_stage_has_begun(c, ADCGS_STAGE_ROUND, progress)) {
         ADCGS_TRY(round_values(t, error));
         adcgs_level_densities(t);
         ADCGS_TRY(t->quantise(t->f, &means, error));
@@ -81,13 +55,45 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
     } else if (t->rounding && !t->frozen && t->iteration % MEANS_EVERY == 0) {
         ADCGS_TRY(t->quantise(t->f, &means, error));
     }
-    if (t->frozen || !t->rounding || progress < c->freeze_start)
+    if (t->frozen || !t->rounding || !adcgs_stage_has_begun(c, ADCGS_STAGE_FREEZE, progress))
         return ADCGS_OK;
     take_average(t);
     ADCGS_TRY(adcgs_rate_target_steps(t, 0, error));
     ADCGS_TRY(adcgs_freeze(t, error));
     ADCGS_TRY(adcgs_tiers_fit(t, error));
     return adcgs_rate_target_frozen(t, error);
+}
+
+static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error *error)
+{
+    const adcgs_train_config *c = &t->config;
+    if (progress >= adcgs_train_lambda_from(c))
+        t->lambda_used = 1;
+    if (!t->fixed_unchanging && adcgs_stage_has_begun(c, ADCGS_STAGE_STATIC_ANCHORS, progress)) {
+        t->fixed_unchanging = 1;
+        ADCGS_TRY(adcgs_fix_unchanging(t, error));
+    }
+    if (!t->motion_tested && adcgs_stage_has_begun(c, ADCGS_STAGE_MOTION_TEST, progress)) { /* motion is found late */
+        t->motion_tested = 1;
+        if (t->iteration >= WEIGH_AFTER)
+            ADCGS_TRY(adcgs_test_motion_gain(t, error));
+    }
+    const adcgs_stage units = t->units_pruned ? ADCGS_STAGE_PRUNE_UNITS_AGAIN : ADCGS_STAGE_PRUNE_UNITS;
+    if (t->units_pruned < 2 && adcgs_stage_has_begun(c, units, progress)) {
+        t->units_pruned++;
+        adcgs_drop_floaters(t);
+        if (t->iteration >= ADCGS_UNITS_AFTER)
+            ADCGS_TRY(adcgs_prune_units(t, error));
+    }
+    if (!t->pruned && adcgs_stage_has_begun(c, ADCGS_STAGE_PRUNE, progress)) {
+        t->pruned = 1;
+        ADCGS_TRY(adcgs_prune_and_fix(t, error));
+    }
+    if (!t->tiered && adcgs_stage_has_begun(c, ADCGS_STAGE_TIERS, progress) && !t->f->follows) {
+        t->tiered = 1;
+        ADCGS_TRY(adcgs_tiers_assign(t, error));
+    }
+    return t->quantise ? round_and_freeze(t, progress, error) : ADCGS_OK;
 }
 
 int adcgs_stages_divide(const adcgs_trainer *t, double progress)
@@ -127,13 +133,12 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
     t->torn = 1;
     adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);
     ADCGS_TRY(adcgs_unfreeze_step(t, progress, error));
-    const int grows = !c->without_densification && t->iteration && t->iteration % c->densify_interval == 0 &&
-                      progress >= c->densify_start && progress < c->densify_until;
+    const int grows =
+        t->iteration && t->iteration % c->densify_interval == 0 && adcgs_stage_lasts(c, ADCGS_STAGE_DENSIFY, progress);
     if (grows)
         ADCGS_TRY(adcgs_densify(t, progress, error));
-    const uint32_t at = t->iteration;
     ADCGS_TRY(enter_stages(t, progress, error));
-    if (t->iteration == at)
+    if (!(t->next_lambda > 0))
         ADCGS_TRY(adcgs_rate_is_sought(t) ? adcgs_rate_search_step(t, progress, error)
                                           : adcgs_rate_control_step(t, progress, error));
     t->torn = grows; /* a run continued from this state would grow again */

@@ -19,6 +19,7 @@ typedef struct adcgs_start_points {
     const adcgs_stereo_point **matched; /**< result of matching for a point; NULL: from another source */
 } adcgs_start_points;
 
+/* Flags of adcgs_start_match(); definition. */
 enum {
     ADCGS_START_KNOWN = 1, /**< found is the result of an earlier call for the same scene and is used again */
     ADCGS_START_JUDGES = 2 /**< report pose errors */

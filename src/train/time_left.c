@@ -2,6 +2,8 @@
 /** \file Remaining time of a run. */
 #include "train/time_left.h"
 
+#include "train/stage_table.h"
+
 #include <math.h>
 
 #define KEEP 0.98 /* decay of the running mean of an iteration's cost; chosen by hand, not measured */
@@ -13,7 +15,9 @@
 
 int adcgs_coarse_divide(const adcgs_train_config *c, double progress)
 {
-    return progress < (double)c->quarter_size_until ? 4 : progress < (double)c->half_size_until ? 2 : 1;
+    return adcgs_stage_lasts(c, ADCGS_STAGE_QUARTER_SIZE, progress) ? 4
+           : adcgs_stage_lasts(c, ADCGS_STAGE_HALF_SIZE, progress)  ? 2
+                                                                    : 1;
 }
 
 static int level_of(int divide)

@@ -23,7 +23,7 @@ typedef enum adcgs_train_target {
 #define ADCGS_TARGET_PSNR_MAX 80.0
 #define ADCGS_TIME_LIMIT_MAX 1e7 /* seconds */
 
-/** Maximum number of rows in the table of settings. */
+/** Maximum number of rows in the table of settings; definition. */
 #define ADCGS_SETTINGS_MAX 120
 
 /** Origin of a setting's value. */

@@ -233,13 +233,15 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
             *stopped = 1;
             return ADCGS_OK;
         }
-        const uint32_t at = t->iteration;
         ADCGS_TRY(adcgs_stages_before(t, progress, error));
-        ADCGS_TRY(take_time(t, begin, error));
-        if (t->iteration != at) { /* it continues from an earlier state, which is now the last good one */
+        if (t->next_lambda > 0) { /* another try from an earlier state, which is then the last good one */
+            t->torn = 1;
+            ADCGS_TRY(adcgs_rate_search_return(t, error));
+            ADCGS_TRY(take_time(t, begin, error));
             ADCGS_TRY(take_snapshot(t, error));
             continue;
         }
+        ADCGS_TRY(take_time(t, begin, error));
         if (adcgs_trainer_progress(t) >= 1) /* loading images or changing anchors used up the time */
             continue;
         ADCGS_TRY(adcgs_train_step(t, progress, error));

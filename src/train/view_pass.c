@@ -4,6 +4,7 @@
 
 #include "grad/random.h"
 #include "train/rate/tier_assignment.h"
+#include "train/stage_table.h"
 #include "train/train_views.h"
 
 /* Share of the run: earlier renders are too inaccurate for gains; chosen by hand, not measured. */
@@ -13,7 +14,7 @@ enum { PICTURES_AHEAD = 8 };
 
 int adcgs_view_pass_has_rate(const adcgs_trainer *t, double progress)
 {
-    return progress >= t->config.rate_start && !t->config.without_rate && !t->frozen;
+    return adcgs_stage_has_begun(&t->config, ADCGS_STAGE_RATE, progress) && !t->frozen;
 }
 
 static int follows_exposure(const adcgs_trainer *t, double progress)
@@ -24,17 +25,18 @@ static int follows_exposure(const adcgs_trainer *t, double progress)
 static adcgs_pass_mode mode_of(const adcgs_trainer *t, double progress, uint32_t number)
 {
     const adcgs_train_config *c = &t->config;
-    const adcgs_quant quant = t->frozen                                              ? ADCGS_QUANT_NONE
-                              : t->rounding                                          ? ADCGS_QUANT_ROUND
-                              : progress >= c->quant_noise_start && !c->without_rate ? ADCGS_QUANT_NOISE
-                                                                                     : ADCGS_QUANT_NONE;
+    const adcgs_quant quant = t->frozen                                               ? ADCGS_QUANT_NONE
+                              : t->rounding                                           ? ADCGS_QUANT_ROUND
+                              : adcgs_stage_has_begun(c, ADCGS_STAGE_NOISE, progress) ? ADCGS_QUANT_NOISE
+                                                                                      : ADCGS_QUANT_NONE;
+    const int moves = adcgs_stage_has_begun(c, ADCGS_STAGE_COARSE, progress) || t->stereo.n_bodies;
     return (adcgs_pass_mode){.quant = quant,
-                             .deform = t->f->follows                                       ? ADCGS_DEFORM_ALL
-                                       : progress < c->deform_start && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE
-                                       : progress < c->fine_start                          ? ADCGS_DEFORM_COARSE
-                                                                                           : ADCGS_DEFORM_ALL,
+                             .deform = t->f->follows                                           ? ADCGS_DEFORM_ALL
+                                       : !moves                                                ? ADCGS_DEFORM_NONE
+                                       : !adcgs_stage_has_begun(c, ADCGS_STAGE_FINE, progress) ? ADCGS_DEFORM_COARSE
+                                                                                               : ADCGS_DEFORM_ALL,
                              .bf16 = c->bf16,
-                             .dropout = progress >= c->quant_round_start ? 0 : c->dropout,
+                             .dropout = adcgs_stage_has_begun(c, ADCGS_STAGE_ROUND, progress) ? 0 : c->dropout,
                              .seed = (uint32_t)adcgs_random64(c->seed, 3000, number)};
 }
 
@@ -94,7 +96,7 @@ static adcgs_status look_at_picture(adcgs_trainer *t, double progress, uint32_t 
 static void add_prices(adcgs_trainer *t, double progress, adcgs_deform deform, adcgs_raster_grads *grads)
 {
     const adcgs_train_config *c = &t->config;
-    if (c->scale_reg_weight > 0 && progress >= c->scale_reg_start)
+    if (c->scale_reg_weight > 0 && adcgs_stage_has_begun(c, ADCGS_STAGE_SCALE_REG, progress))
         adcgs_scale_penalty(&t->pass->primitives, &t->viewpoints, c->scale_reg_weight, grads->scale);
     t->pass->pull = NULL;
     if (c->rigidity_weight > 0 && deform && t->f->mlp[ADCGS_P_OMEGA].n) {
@@ -114,7 +116,7 @@ adcgs_status adcgs_view_pass(adcgs_trainer *t, double progress, uint32_t number,
     /* A rounding pass updates the means of the groups that it measures, so all passes of an iteration use the same groups. */
     const uint32_t turn = mode.quant == ADCGS_QUANT_ROUND ? t->iteration : number;
     adcgs_raster_grads grads = t->pass->grads;
-    if (progress >= c->densify_until) /* only growth needs it */
+    if (progress >= adcgs_stage_end(c, ADCGS_STAGE_DENSIFY)) /* only growth needs it */
         grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(look_at_picture(t, progress, number, &grads, result, error));

@@ -239,6 +239,12 @@ grep '"iteration": *0,' "$dir/set.log" | grep -q '"anchors": *[1-9][0-9]\?,' || 
 ./adcgs-enc --set list --preset draft >"$dir/list" || bad "--set list"
 grep -q '^  max_anchors  *1200 .*(1 to 1048576)$' "$dir/list" || { bad "another list of settings"; cat "$dir/list"; }
 
+# The stages of a run, without a scene.
+expect 0 "" ./adcgs-enc --schedule -n 3000 --set prune_at=0.6 --without fine
+grep -q '^pruning  *60  *1801 *prune_at' "$dir/out" && grep -q '^images 1/4  *0-25  *0-750 ' "$dir/out" &&
+    grep -q '^fine deformation  *-  *- ' "$dir/out" || { bad "--schedule"; cat "$dir/out"; }
+expect 2 "iterations" ./adcgs-enc --schedule -n 3
+
 # --why excludes other reports. For a stream of an encoder that stored no reasons it says so.
 expect 2 "why excludes other" ./adcgs-info --why --json "$dir/one.adcgs"
 expect 2 "why excludes other" ./adcgs-info --why --bytes 20k -o "$dir/x.adcgs" "$dir/one.adcgs"

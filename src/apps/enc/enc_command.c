@@ -4,11 +4,13 @@
 
 #include "apps/enc/enc_command.h"
 
+#include "apps/enc/enc_configure.h"
 #include "base/cpu_detect.h"
 #include "media/kind.h"
 #include "scene/layouts/open.h"
 #include "session/enc_plan.h"
 #include "train/settings.h"
+#include "train/stage_table.h"
 
 /* ---- Options ---- */
 
@@ -120,6 +122,8 @@ static void add_method_options(adcgs_option_table *out, adcgs_enc_options *o, co
          "all anchors at once, instead of tiers that each add detail\nto the previous ones; a few percent smaller", NULL, NULL},
         {"set", 0, ADCGS_OPTION_STRING, &o->set, 0, 0, "NAME=VALUE,...",
          "changes of the preset's settings; 'list' shows them all", names, NULL},
+        {"schedule", 0, ADCGS_OPTION_FLAG, &o->schedule, 0, 0, NULL,
+         "print the stages of the run by these settings, and exit; a\nscene may change some of them", NULL, NULL},
     };
     adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
@@ -242,6 +246,16 @@ static int list_settings(const adcgs_cli *cli, const adcgs_enc_options *o)
     return adcgs_cli_leave(cli, 0);
 }
 
+static int print_schedule(const adcgs_cli *cli, const adcgs_enc_options *o)
+{
+    adcgs_train_config config;
+    adcgs_error error;
+    if (adcgs_enc_configure(&config, o, ADCGS_CPU_SCALAR, &error) != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
+    adcgs_stage_list(&config, stdout);
+    return adcgs_cli_leave(cli, 0);
+}
+
 int adcgs_enc_parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
 {
     const char *names[ADCGS_SETTING_NAMES + 1];
@@ -262,6 +276,8 @@ int adcgs_enc_parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         return code;
     if (o->set && !strcmp(o->set, "list"))
         return list_settings(cli, o);
+    if (o->schedule)
+        return print_schedule(cli, o);
     if (first >= argc)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
     if (first + 1 < argc)

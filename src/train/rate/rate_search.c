@@ -59,9 +59,9 @@ static adcgs_status keep_beginning(adcgs_trainer *t, adcgs_error *error)
     return status;
 }
 
-/** Restores the state at the start of rate, except lambda and the elapsed time. */
-static adcgs_status begin_again(adcgs_trainer *t, double lambda, adcgs_error *error)
+adcgs_status adcgs_rate_search_return(adcgs_trainer *t, adcgs_error *error)
 {
+    const double lambda = t->next_lambda;
     const adcgs_rate_control tried = t->rate_control;
     const adcgs_time elapsed = t->elapsed;
     adcgs_buffer begin = t->begin;
@@ -72,6 +72,7 @@ static adcgs_status begin_again(adcgs_trainer *t, double lambda, adcgs_error *er
     t->rate_control = tried;
     t->elapsed = elapsed;
     t->lambda = lambda;
+    t->next_lambda = 0;
     return status;
 }
 
@@ -102,20 +103,19 @@ adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_err
     s->tried = tried;
     s->off = off;
     if (!settled)
-        return begin_again(t, lambda, error);
-    if (is_size)
+        t->next_lambda = lambda;
+    else if (is_size)
         adcgs_buffer_clear(&t->begin);
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_rate_search_end(adcgs_trainer *t, double missing, adcgs_error *error)
+void adcgs_rate_search_end(adcgs_trainer *t, double missing)
 {
     adcgs_rate_control *s = &t->rate_control;
     if (missing > 0 && t->begin.size && !s->missed) {
         s->missed = 1;
         s->tries = TRIES - 1;
-        return begin_again(t, adcgs_rate_bounded(t, s->tried * exp(-(missing + MISSED_DOUBT) / MISSED_POWER)), error);
-    }
-    adcgs_buffer_clear(&t->begin);
-    return ADCGS_OK;
+        t->next_lambda = adcgs_rate_bounded(t, s->tried * exp(-(missing + MISSED_DOUBT) / MISSED_POWER));
+    } else
+        adcgs_buffer_clear(&t->begin);
 }

@@ -12,13 +12,18 @@
 
 /** True if the search is not finished. A run with a time limit cannot return. */
 int adcgs_rate_is_sought(const adcgs_trainer *trainer);
-/** Called before each iteration during the search. If the run returns, t->iteration decreases and so progress changes. */
+/** Called before each iteration during the search. A try that fails sets t->next_lambda. */
 adcgs_status adcgs_rate_search_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
 
 /**
  * Called after values are frozen. missing: dB below the target, negative if above. On the first shortfall, a run with a search
- * returns as above.
+ * sets t->next_lambda.
  */
-adcgs_status adcgs_rate_search_end(adcgs_trainer *trainer, double missing, adcgs_error *error);
+void adcgs_rate_search_end(adcgs_trainer *trainer, double missing);
+/**
+ * Restores the state at rate_start, except lambda, which becomes t->next_lambda, and the elapsed time. The training loop calls it
+ * where t->next_lambda is set: t->iteration decreases, and so progress.
+ */
+adcgs_status adcgs_rate_search_return(adcgs_trainer *trainer, adcgs_error *error);
 
 #endif

@@ -146,11 +146,10 @@ adcgs_status adcgs_rate_target_frozen(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(adcgs_trainer_load_views(t, 1, error));
     const double aim = target - PSNR_GAIN;
     if (t->begin.size) {
-        const uint32_t at = t->iteration;
         double value;
         ADCGS_TRY(value_now(t, &value, error));
-        ADCGS_TRY(adcgs_rate_search_end(t, aim - PSNR_NEAR - value, error));
-        if (t->iteration != at)
+        adcgs_rate_search_end(t, aim - PSNR_NEAR - value);
+        if (t->next_lambda > 0)
             return ADCGS_OK;
     }
     return land(t, &(window){aim - PSNR_NEAR, aim + PSNR_NEAR}, error);

@@ -15,7 +15,7 @@
 adcgs_status adcgs_rate_target_steps(adcgs_trainer *trainer, int first, adcgs_error *error);
 /**
  * Called right after values are frozen. Meets the target minus the expected effect of training the networks, or returns
- * (adcgs_rate_search_end()).
+ * early (adcgs_rate_search_end()).
  */
 adcgs_status adcgs_rate_target_frozen(adcgs_trainer *trainer, adcgs_error *error);
 /** Called at the end with frozen values: meets the target as closely as possible, if it is not met yet. */

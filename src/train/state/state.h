@@ -122,6 +122,7 @@ typedef struct adcgs_trainer {
     adcgs_buffer snapshot;
     uint32_t snapshot_at; /* its iteration */
     int torn;             /* 1: the state is between two steps of a change; only the snapshot is consistent */
+    double next_lambda;   /* > 0: the loop returns to rate_start with this lambda; see rate_search.h */
     adcgs_buffer begin;   /* in checkpoints, too: state at rate_start, while the run may return; see rate_search.h */
 } adcgs_trainer;
 

@@ -6,6 +6,7 @@
 #include "training_runs.h"
 
 #include "encode/quantise.h"
+#include "train/stage_table.h"
 
 #include <math.h>
 
@@ -45,6 +46,37 @@ static void windows_grow_outwards(void **state)
     adcgs_curriculum_grow(w, 1, t->f);
     assert_true(w->n == t->n_views && w->first == 0 && w->last == rows - 1);
     adcgs_trainer_free(&t);
+}
+
+/* ---- The table of stages ---- */
+
+/** Stages begin and end where their settings say, not before the stages that they need, and not if their part is left out. */
+static void stages_follow_their_settings(void **state)
+{
+    (void)state;
+    adcgs_train_config c;
+    assert_int_equal(adcgs_train_preset(&c, "fast", &error), ADCGS_OK);
+    for (int i = 0; i <= 1000; i++) {
+        const double at = i / 1000.0;
+        const int divide = at < (double)c.quarter_size_until ? 4 : at < (double)c.half_size_until ? 2 : 1;
+        assert_int_equal(adcgs_coarse_divide(&c, at), divide);
+        assert_int_equal(adcgs_stage_lasts(&c, ADCGS_STAGE_DENSIFY, at), at >= c.densify_start && at < c.densify_until);
+        assert_int_equal(adcgs_stage_has_begun(&c, ADCGS_STAGE_PRUNE, at), at >= c.prune_at);
+        assert_int_equal(adcgs_stage_has_begun(&c, ADCGS_STAGE_FREEZE, at), at >= c.freeze_start);
+    }
+    c.tiers_start = 0.4f;
+    c.freeze_start = 0.5f;
+    c.prune_units_again = 0.1f;
+    assert_true(adcgs_stage_begin(&c, ADCGS_STAGE_TIERS) == (double)c.prune_at);
+    assert_true(adcgs_stage_begin(&c, ADCGS_STAGE_FREEZE) == (double)c.quant_round_start);
+    assert_true(adcgs_stage_begin(&c, ADCGS_STAGE_PRUNE_UNITS_AGAIN) == (double)c.prune_units_at);
+    c.without_rate = 1;
+    assert_false(adcgs_stage_has_begun(&c, ADCGS_STAGE_NOISE, 1) || adcgs_stage_has_begun(&c, ADCGS_STAGE_RATE, 1) ||
+                 adcgs_stage_has_begun(&c, ADCGS_STAGE_MOTION_TEST, 1) || adcgs_stage_has_begun(&c, ADCGS_STAGE_PRUNE_UNITS, 1));
+    assert_true(adcgs_stage_has_begun(&c, ADCGS_STAGE_STATIC_ANCHORS, 1) && adcgs_stage_has_begun(&c, ADCGS_STAGE_ROUND, 1));
+    c.without_densification = 1;
+    assert_false(adcgs_stage_lasts(&c, ADCGS_STAGE_DENSIFY, 0.2) || adcgs_stage_has_begun(&c, ADCGS_STAGE_PRUNE, 1) ||
+                 adcgs_stage_has_begun(&c, ADCGS_STAGE_STATIC_ANCHORS, 1));
 }
 
 /** The mean of three states, exact to the bit where the states agree. A model of another size starts a mean of its own. */
@@ -271,15 +303,11 @@ static void time_limits_count_what_was_before(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(windows_grow_outwards),
-        cmocka_unit_test(averages_are_means),
-        cmocka_unit_test(moments_shared_by_views_change_settings),
-        cmocka_unit_test(few_cameras_make_time_smooth),
-        cmocka_unit_test(rates_stay_then_fall),
-        cmocka_unit_test(rates_follow_their_kind),
-        cmocka_unit_test(time_left_follows_the_schedule),
-        cmocka_unit_test(time_left_knows_loading),
-        cmocka_unit_test(time_limits_count_what_was_before),
+        cmocka_unit_test(stages_follow_their_settings), cmocka_unit_test(windows_grow_outwards),
+        cmocka_unit_test(averages_are_means),           cmocka_unit_test(moments_shared_by_views_change_settings),
+        cmocka_unit_test(few_cameras_make_time_smooth), cmocka_unit_test(rates_stay_then_fall),
+        cmocka_unit_test(rates_follow_their_kind),      cmocka_unit_test(time_left_follows_the_schedule),
+        cmocka_unit_test(time_left_knows_loading),      cmocka_unit_test(time_limits_count_what_was_before),
     };
     return cmocka_run_group_tests_name("schedule", tests, open_scene, close_scene);
 }
