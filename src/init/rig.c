@@ -156,7 +156,7 @@ static adcgs_status load_frame(const adcgs_scene *scene, const adcgs_scene_view 
     adcgs_camera small;
     const double pixels = (double)view->camera.width * view->camera.height;
     const int divide = ADCGS_MAX((int)ceil(sqrt(pixels / PIXELS_MOST)), 1);
-    ADCGS_TRY(adcgs_scene_load(scene, view, divide, &rgb, &small, error));
+    ADCGS_TRY(adcgs_scene_image(scene, view, divide, &rgb, &small, error));
     set_view(&camera->view, &small, o);
     camera->frame[frame] = to_bytes(rgb, (size_t)small.width * (size_t)small.height, error);
     free(rgb);

@@ -47,7 +47,7 @@ typedef struct session {
 static adcgs_status load_truth(const session *s, const adcgs_scene_view *view, float **truth, adcgs_camera *camera,
                                adcgs_error *error)
 {
-    return adcgs_scene_load(s->scene, view, ADCGS_MAX(s->scene->measured, 1), truth, camera, error);
+    return adcgs_scene_image(s->scene, view, ADCGS_MAX(s->scene->measured, 1), truth, camera, error);
 }
 
 /** Load the true images of the camera whose views are order[first..end). */

@@ -5,23 +5,26 @@
 #include "scene/image_store.h"
 
 #include "scene/clips.h"
+#include "scene/image_cache.h"
+#include "scene/image_values.h"
 #include "scene/spool.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
-
-#define FULL 65535.0f /* largest 16-bit value; arithmetic */
-#define LEVEL 257     /* step in 16 bits for one level of 8 bits; arithmetic: 65535 / 255 */
 
 typedef enum place { IN_MEMORY, IN_FILE, NOWHERE } place; /* NOWHERE: decoded again for each use */
 
 typedef struct picture {
     adcgs_camera camera;
-    void *values; /**< if in memory */
-    uint64_t at;  /**< offset, if in the file */
+    void *values;                     /**< if in memory */
+    const adcgs_packed_image *shared; /**< instead of values: an image of the scene, with the same values; or NULL */
+    uint64_t at;                      /**< offset, if in the file */
     place place;
     uint8_t bytes;   /**< size of a value: 1, 2, or 4 for binary32 */
     uint8_t *hidden; /**< [height * width] pixels that are unknown; values holds 0 for them; NULL: none */
@@ -48,47 +51,6 @@ static size_t values_of(const picture *p)
 static size_t bytes_of(const picture *p)
 {
     return values_of(p) * p->bytes;
-}
-
-static int is_wide(const float *rgb, size_t n)
-{
-    int wide = 0;
-    for (size_t i = 0; i < n; i++)
-        wide |= !(rgb[i] >= 0.0f && rgb[i] <= 1.0f);
-    return wide;
-}
-
-static inline uint16_t to_16(float value)
-{
-    return (uint16_t)(value * FULL + 0.5f);
-}
-
-/** In place: a narrower value never overtakes its source. \return bytes of a value, without a loss to its 16 bits */
-static uint8_t narrow(float *rgb, size_t n)
-{
-    uint32_t between = 0;
-    for (size_t i = 0; i < n; i++) {
-        const uint16_t value = to_16(rgb[i]);
-        between |= value % LEVEL;
-        memcpy((char *)rgb + i * sizeof value, &value, sizeof value);
-    }
-    for (size_t i = 0; !between && i < n; i++) {
-        uint16_t value;
-        memcpy(&value, (char *)rgb + i * sizeof value, sizeof value);
-        ((uint8_t *)rgb)[i] = (uint8_t)(value / LEVEL);
-    }
-    return between ? 2 : 1;
-}
-
-/** Converts values to floats; 8 bits yield the same floats as 16. */
-static void widen(float *rgb, const void *values, uint8_t bytes, size_t n)
-{
-    for (size_t i = 0; bytes == 1 && i < n; i++)
-        rgb[i] = (float)(LEVEL * ((const uint8_t *)values)[i]) / FULL;
-    for (size_t i = 0; bytes == 2 && i < n; i++)
-        rgb[i] = (float)((const uint16_t *)values)[i] / FULL;
-    if (bytes == 4)
-        memcpy(rgb, values, n * sizeof *rgb);
 }
 
 /** Records the unknown pixels and replaces them by 0, which can be stored. */
@@ -118,6 +80,13 @@ static void show_hidden(const picture *p, float *rgb)
 }
 
 /* ---- Loading ---- */
+
+/** Counts bytes of memory among those of the scene's images, which give way. */
+static void charge(const adcgs_image_store *p, int64_t bytes)
+{
+    if (p->scene->images)
+        adcgs_image_cache_charge(p->scene->images, bytes);
+}
 
 /** Decides where an image is kept. */
 static void find_place(adcgs_image_store *p, picture *to, int can_decode)
@@ -151,7 +120,7 @@ static adcgs_status keep(adcgs_image_store *p, picture *to, float *rgb, int can_
         free(rgb);
         return status;
     }
-    to->bytes = is_wide(rgb, values_of(to)) ? sizeof *rgb : narrow(rgb, values_of(to));
+    to->bytes = adcgs_values_narrow(rgb, values_of(to));
     find_place(p, to, can_decode);
     const int problem = to->place == IN_FILE ? adcgs_spool_write(&p->spool, rgb, bytes_of(to), to->at) : 0;
     if (problem && can_decode)
@@ -159,6 +128,7 @@ static adcgs_status keep(adcgs_image_store *p, picture *to, float *rgb, int can_
     else if (problem)
         to->place = IN_MEMORY;
     if (to->place == IN_MEMORY) {
+        charge(p, (int64_t)bytes_of(to));
         void *const fitted = realloc(rgb, bytes_of(to));
         to->values = fitted ? fitted : rgb;
     } else
@@ -174,14 +144,56 @@ typedef struct load_job {
     int stop;            /**< likewise */
 } load_job;
 
+/** Shares an image with the scene, if it has the same values and room. *shared: it does. */
+static adcgs_status share(adcgs_image_store *p, uint32_t view, int *shared, adcgs_error *error)
+{
+    const adcgs_scene_view *const v = &p->scene->views[p->config.split][view];
+    picture *to = &p->list[view];
+    const adcgs_packed_image *image;
+    *shared = 0;
+    ADCGS_TRY(adcgs_scene_borrow(p->scene, v, p->config.divide, &image, error));
+    if (!image)
+        return ADCGS_OK;
+    to->camera = v->camera;
+    to->bytes = (uint8_t)image->bytes;
+    pthread_mutex_lock(&p->lock);
+    *shared = p->held + bytes_of(to) <= p->config.memory;
+    p->held += *shared ? bytes_of(to) : 0;
+    pthread_mutex_unlock(&p->lock);
+    to->place = IN_MEMORY;
+    to->shared = *shared ? image : NULL;
+    if (!*shared)
+        adcgs_scene_give_back(p->scene, image);
+    return ADCGS_OK;
+}
+
+/** Frees the memory of an image. */
+static void let_go(adcgs_image_store *p, picture *of)
+{
+    if (of->values)
+        charge(p, -(int64_t)bytes_of(of));
+    if (of->shared)
+        adcgs_scene_give_back(p->scene, of->shared);
+    free(of->values);
+    of->values = NULL;
+    of->shared = NULL;
+}
+
 static adcgs_status load_view(adcgs_image_store *p, uint32_t view, adcgs_error *error)
 {
     float *rgb;
-    ADCGS_TRY(adcgs_scene_load(p->scene, &p->scene->views[p->config.split][view], p->config.divide, &rgb, &p->list[view].camera,
-                               error));
+    int shared;
+    ADCGS_TRY(share(p, view, &shared, error));
+    if (shared && !p->config.thumbnails)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_scene_image(p->scene, &p->scene->views[p->config.split][view], p->config.divide, &rgb, &p->list[view].camera,
+                                error));
     if (p->config.thumbnails)
         adcgs_thumbnail_compute(&p->config.thumbnails[view], rgb, p->list[view].camera.width, p->list[view].camera.height);
-    return keep(p, &p->list[view], rgb, 1, error);
+    if (!shared)
+        return keep(p, &p->list[view], rgb, 1, error);
+    free(rgb);
+    return ADCGS_OK;
 }
 
 /** Counts an image as loaded, or as failed. \return true to continue */
@@ -262,7 +274,7 @@ void adcgs_image_store_free(adcgs_image_store **pictures)
     if (!p)
         return;
     for (uint32_t i = 0; p->list && i < p->n; i++) {
-        free(p->list[i].values);
+        let_go(p, &p->list[i]);
         free(p->list[i].hidden);
     }
     adcgs_spool_clear(&p->spool);
@@ -270,6 +282,9 @@ void adcgs_image_store_free(adcgs_image_store **pictures)
     free(p->list);
     free(p);
     *pictures = NULL;
+#ifdef __GLIBC__
+    malloc_trim(0); /* images of another size do not fit into the gaps */
+#endif
 }
 
 /* ---- Use ---- */
@@ -285,10 +300,10 @@ static adcgs_status decode_again(const adcgs_image_store *pictures, uint32_t vie
     const picture *p = &pictures->list[view];
     const adcgs_scene_view *v = &pictures->scene->views[pictures->config.split][view];
     float *values;
-    ADCGS_TRY(adcgs_scene_load(pictures->scene, v, pictures->config.divide, &values, NULL, error));
+    ADCGS_TRY(adcgs_scene_image(pictures->scene, v, pictures->config.divide, &values, NULL, error));
     for (size_t i = 0; i < values_of(p); i++) {
         const float x = isnan(values[i]) ? 0.0f : values[i];
-        rgb[i] = p->bytes == sizeof *rgb ? x : (float)to_16(fminf(fmaxf(x, 0.0f), 1.0f)) / FULL;
+        rgb[i] = p->bytes == sizeof *rgb ? x : adcgs_value_round(x);
     }
     free(values);
     return ADCGS_OK;
@@ -300,7 +315,7 @@ static int read_file(const adcgs_image_store *pictures, const picture *p, float 
     void *const values = malloc(bytes_of(p));
     const int problem = values ? adcgs_spool_read(&pictures->spool, values, bytes_of(p), p->at) : ENOMEM;
     if (!problem)
-        widen(rgb, values, p->bytes, values_of(p));
+        adcgs_values_widen(rgb, values, p->bytes, values_of(p));
     free(values);
     return problem;
 }
@@ -308,8 +323,10 @@ static int read_file(const adcgs_image_store *pictures, const picture *p, float 
 adcgs_status adcgs_image_store_get(const adcgs_image_store *pictures, uint32_t view, float *rgb, adcgs_error *error)
 {
     const picture *p = &pictures->list[view];
-    if (p->place == IN_MEMORY)
-        widen(rgb, p->values, p->bytes, values_of(p));
+    if (p->shared)
+        adcgs_packed_image_planes(p->shared, rgb);
+    else if (p->place == IN_MEMORY)
+        adcgs_values_widen(rgb, p->values, p->bytes, values_of(p));
     else if (p->place == NOWHERE || read_file(pictures, p, rgb))
         ADCGS_TRY(decode_again(pictures, view, rgb, error));
     show_hidden(p, rgb);
@@ -331,8 +348,7 @@ adcgs_status adcgs_image_store_put(adcgs_image_store *pictures, uint32_t view, c
     if (p->place == IN_MEMORY)
         pictures->held -= bytes_of(p);
     pictures->nowhere -= p->place == NOWHERE;
-    free(p->values);
-    p->values = NULL;
+    let_go(pictures, p);
     return keep(pictures, p, copy, 0, error);
 }
 

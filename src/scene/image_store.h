@@ -20,7 +20,7 @@ typedef int (*adcgs_image_store_progress)(void *user, uint32_t done, uint32_t n)
 
 typedef struct adcgs_image_store_config {
     adcgs_split split;
-    int divide;                          /**< sizes are divided by this, see adcgs_scene_load() */
+    int divide;                          /**< sizes are divided by this, see adcgs_scene_image() */
     uint64_t memory;                     /**< limit in bytes of images in memory; 0: adcgs_image_store_default_memory() */
     adcgs_image_store_progress progress; /**< or NULL */
     void *user;
@@ -39,7 +39,7 @@ void adcgs_image_store_free(adcgs_image_store **pictures);
 /** The camera at the size of the images. */
 const adcgs_camera *adcgs_image_store_camera(const adcgs_image_store *pictures, uint32_t view);
 /**
- * Copies an image to the caller's rgb, planar [3][height][width], with values as from adcgs_scene_load(). Any thread may call.
+ * Copies an image to the caller's rgb, planar [3][height][width], with values as from adcgs_scene_image(). Any thread may call.
  */
 adcgs_status adcgs_image_store_get(const adcgs_image_store *pictures, uint32_t view, float *rgb, adcgs_error *error);
 /** [height * width] 1 where a pixel is unknown (masked or clipped); NULL: all pixels are known. */
@@ -62,6 +62,11 @@ typedef struct adcgs_image_store_need {
     uint32_t n, again;     /**< images, and the number of those that are decoded again */
 } adcgs_image_store_need;
 
+/**
+ * The least bytes of all images of a split in memory, of 8 bits where these may suffice and no matter what the limit is. Decodes
+ * nothing.
+ */
+uint64_t adcgs_image_store_least(const adcgs_scene *scene, adcgs_split split, int divide);
 /** Estimates the storage before images are loaded. Decodes one or two images, or none if all fit into memory as binary32. */
 adcgs_status adcgs_image_store_estimate(adcgs_image_store_need *need, const adcgs_scene *scene,
                                         const adcgs_image_store_config *config, adcgs_error *error);

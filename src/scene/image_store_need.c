@@ -14,6 +14,17 @@ static uint64_t values_of(const adcgs_scene_view *view, int divide)
     return 3 * width * (uint64_t)((view->camera.height + divide - 1) / divide);
 }
 
+uint64_t adcgs_image_store_least(const adcgs_scene *scene, adcgs_split split, int divide)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < scene->n_views[split]; i++) {
+        const adcgs_scene_view *const v = &scene->views[split][i];
+        const int computed = divide > 1 || v->is_video || v->lens.width > 0 || scene->has_alpha || scene->splats;
+        bytes += values_of(v, divide) * (computed ? 2 : 1);
+    }
+    return bytes;
+}
+
 /** Raises *bytes to the bytes per value of a view, found by loading the view alone. */
 static adcgs_status sample(const adcgs_scene *scene, const adcgs_image_store_config *config, uint32_t view, uint64_t *bytes,
                            adcgs_error *error)

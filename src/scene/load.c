@@ -1,24 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Loads images for training and measuring: reads, composites over the background, undistorts and reduces them. If an image
- * needs both undistortion and reduction, most of the reduction comes first: a box filter is cheap, resampling is expensive. The
- * last integer factor follows undistortion, to preserve detail where the lens stretches the image. On a grid twice as fine,
- * interpolation loses next to nothing of the final result. An image file without mask and lens is reduced row by row during
- * reading, to the same values. A large image is never in memory whole as binary32.
+ * Loads images for training and measuring, from files, videos or splats, or from those that the scene keeps. An image file
+ * without mask and lens is reduced row by row during reading, to the same values as a whole image. A large image is never in
+ * memory whole as binary32.
  */
 #include "config.h"
 
 #include "scene/scene.h"
 
 #include "scene/clips.h"
+#include "scene/image_cache.h"
+#include "scene/image_shape.h"
 #include "scene/splat_views.h"
 #include "scene/view_mask.h"
 
-#include <math.h>
 #include <stdlib.h>
-
-/* Least unmasked share of a pixel that counts, and least moving share of a moving pixel; a half, definition. */
-#define COUNTS 0.5f
 
 static adcgs_status check_size(const adcgs_scene_view *view, const char *path, int width, int height, adcgs_error *error)
 {
@@ -30,18 +26,12 @@ static adcgs_status check_size(const adcgs_scene_view *view, const char *path, i
                       wanted[0], wanted[1]);
 }
 
+/** Refuses an image of the wrong size before memory for its pixels is allocated. */
 static adcgs_status probe(const adcgs_scene_view *view, const char *path, adcgs_error *error)
 {
     int width, height, channels;
     ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, path, error));
     return check_size(view, path, width, height, error);
-}
-
-/** Refuses an image of the wrong size before memory for its pixels is allocated. */
-static adcgs_status read_image(const adcgs_scene_view *view, const char *path, adcgs_image *image, adcgs_error *error)
-{
-    ADCGS_TRY(probe(view, path, error));
-    return adcgs_image_read(image, path, error);
 }
 
 adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
@@ -52,231 +42,154 @@ adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
     return view->moving ? adcgs_view_mask_probe(view, view->moving, error) : ADCGS_OK;
 }
 
-/* ---- Reading ---- */
+/* ---- Decoding ---- */
 
-/** Reads the image as recorded, from a file or a video, or renders it from splats. */
-static adcgs_status read_picture(const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
+/** An image of a view: its own, or its mask. */
+typedef struct wanted {
+    const adcgs_scene *scene;
+    const adcgs_scene_view *view;
+    int is_mask;
+} wanted;
+
+static adcgs_status decode_whole(const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
 {
     if (scene->splats)
         return adcgs_splat_scene_render(scene->splats, scene->background, &view->camera, image, view->path, error);
+    if (!view->is_video)
+        ADCGS_TRY(probe(view, view->path, error));
     ADCGS_TRY(view->is_video ? adcgs_clips_read(scene->clips, view->path, view->frame, image, error)
-                             : read_image(view, view->path, image, error));
+                             : adcgs_image_read(image, view->path, error));
+    adcgs_image_cache_count(scene->images);
     const adcgs_status status = check_size(view, view->path, image->width, image->height, error);
     if (status != ADCGS_OK)
         adcgs_image_free(image);
     return status;
 }
 
-/* ---- Reducing ---- */
+/** Rows of a file, or of a kept image. */
+typedef struct rows {
+    adcgs_image_rows *file;
+    const adcgs_packed_image *kept;
+    const char *path;
+    int width, height, channels, done;
+} rows;
 
-/** Input of the reduction: colours over a background, or colours with a weight in the fourth channel and no background. */
-typedef struct source {
-    const adcgs_image *image, *mask; /**< mask NULL: every pixel counts */
-    const float *background;         /**< NULL: the fourth channel, if present, is the weight */
-} source;
-
-/** Colour of one pixel over the background. */
-static inline void composite(const float *pixel, int channels, const float background[3], float rgb[3])
+static adcgs_status open_rows(rows *r, const wanted *w, const adcgs_packed_image *kept, adcgs_error *error)
 {
-    const float alpha = channels % 2 ? 1.0f : pixel[channels - 1];
-    for (int c = 0; c < 3; c++) {
-        const float value = pixel[channels < 3 ? 0 : c];
-        rgb[c] = channels % 2 ? value : value * alpha + background[c] * (1.0f - alpha);
+    *r = (rows){.kept = kept, .path = w->is_mask ? w->view->mask : w->view->path};
+    if (kept) {
+        r->width = kept->width;
+        r->height = kept->height;
+        r->channels = kept->channels;
+        return check_size(w->view, r->path, r->width, r->height, error);
     }
+    ADCGS_TRY(w->is_mask ? adcgs_view_mask_check(w->view, r->path, error) : probe(w->view, r->path, error));
+    ADCGS_TRY(adcgs_image_rows_open(&r->file, &r->width, &r->height, &r->channels, r->path, error));
+    adcgs_image_cache_count(w->scene->images);
+    const adcgs_status status = w->is_mask ? ADCGS_OK : check_size(w->view, r->path, r->width, r->height, error);
+    if (status != ADCGS_OK)
+        adcgs_image_rows_close(&r->file);
+    return status;
 }
 
-/** True for any colour except black. */
-static inline int is_seen(const adcgs_image *mask, size_t pixel)
+static adcgs_status read_rows(rows *r, int n, float *to, adcgs_error *error)
 {
-    const float *values = mask->data + pixel * (size_t)mask->channels;
-    const int colours = mask->channels < 3 ? 1 : 3;
-    int seen = 0;
-    for (int c = 0; c < colours; c++)
-        seen |= values[c] > 0.0f;
-    return seen;
-}
-
-/** Sets colour and weight of a pixel; true if the pixel counts. */
-static inline int read_pixel(const source *s, size_t pixel, float value[4])
-{
-    const float *from = s->image->data + pixel * (size_t)s->image->channels;
-    value[3] = 1.0f;
-    if (s->mask && !is_seen(s->mask, pixel))
-        return 0;
-    if (s->background)
-        composite(from, s->image->channels, s->background, value);
-    else
-        memcpy(value, from, (size_t)s->image->channels * sizeof *value);
-    return value[3] > 0.0f;
-}
-
-/** Averages the counting source pixels in the box under one pixel of the reduced image; out[3] is their share. */
-static void average_box(const source *s, int x, int y, int divide, float out[4])
-{
-    const int right = ADCGS_MIN(x + divide, s->image->width), bottom = ADCGS_MIN(y + divide, s->image->height);
-    float sum[4] = {0.0f, 0.0f, 0.0f, 0.0f}, value[4] = {0.0f, 0.0f, 0.0f, 0.0f};
-    for (int v = y; v < bottom; v++)
-        for (int u = x; u < right; u++) {
-            if (!read_pixel(s, (size_t)v * (size_t)s->image->width + (size_t)u, value))
-                continue;
-            for (int c = 0; c < 3; c++)
-                sum[c] += value[3] * value[c];
-            sum[3] += value[3];
-        }
-    const float scale = sum[3] > 0.0f ? 1.0f / sum[3] : 0.0f;
-    for (int c = 0; c < 3; c++)
-        out[c] = sum[c] * scale;
-    out[3] = sum[3] / (float)((right - x) * (bottom - y));
-}
-
-static adcgs_status reduce(adcgs_image *out, const source *s, int divide, const char *path, adcgs_error *error)
-{
-    const int width = (s->image->width + divide - 1) / divide, height = (s->image->height + divide - 1) / divide;
-    const int channels = s->mask || (!s->background && s->image->channels == 4) ? 4 : 3;
-    ADCGS_TRY(adcgs_image_alloc(out, width, height, channels, path, error));
-    float *to = out->data;
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++, to += channels) {
-            float value[4];
-            average_box(s, x * divide, y * divide, divide, value);
-            memcpy(to, value, (size_t)channels * sizeof *to);
-        }
+    if (!r->kept)
+        return adcgs_image_rows_read(r->file, n, to, r->path, error);
+    adcgs_packed_image_rows(r->kept, r->done, n, to);
+    r->done += n;
     return ADCGS_OK;
 }
 
-/** Reduce in place. */
-static adcgs_status reduce_image(adcgs_image *image, const source *s, int divide, const char *path, adcgs_error *error)
+static void close_rows(rows *r)
 {
-    adcgs_image out;
-    ADCGS_TRY(reduce(&out, s, divide, path, error));
-    adcgs_image_free(image);
-    *image = out;
-    return ADCGS_OK;
+    if (r->file)
+        adcgs_image_rows_close(&r->file);
 }
 
-/* ---- Straightening ---- */
+/* ---- Kept images ---- */
 
-static void divide_camera(adcgs_camera *camera, int divide)
+/** Decodes a file for the scene to keep. */
+static adcgs_status pack_file(void *user, adcgs_packed_image *packed, adcgs_error *error)
 {
-    camera->width = (camera->width + divide - 1) / divide;
-    camera->height = (camera->height + divide - 1) / divide;
-    camera->fx /= divide;
-    camera->fy /= divide;
-    camera->cx /= divide;
-    camera->cy /= divide;
-}
-
-/** The factor left for after undistortion: the smallest divisor above 1. */
-static int last_factor(int divide)
-{
-    for (int factor = 2; factor * factor <= divide; factor++)
-        if (divide % factor == 0)
-            return factor;
-    return divide;
-}
-
-/** The image is already reduced by `divide`. */
-static adcgs_status straighten(const adcgs_scene_view *view, adcgs_image *image, int divide, adcgs_error *error)
-{
-    adcgs_lens lens = view->lens;
-    adcgs_camera camera = view->camera;
-    divide_camera(&camera, divide);
-    lens.width = image->width;
-    lens.height = image->height;
-    lens.fx /= divide;
-    lens.fy /= divide;
-    lens.cx /= divide;
-    lens.cy /= divide;
-    lens.skew /= divide;
-    return adcgs_lens_straighten(&lens, &camera, image, view->path, error);
-}
-
-/** Replaces the recorded image by one of the requested size: colours, and with a mask their weight. */
-static adcgs_status shape(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_image *mask, int divide,
-                          adcgs_image *image, adcgs_error *error)
-{
-    const int bends = view->lens.width > 0, after = bends ? last_factor(divide) : 1, before = divide / after;
-    const source taken = {image, mask, scene->background}, straight = {image, NULL, NULL};
-    if (before > 1 || mask || image->channels != 3)
-        ADCGS_TRY(reduce_image(image, &taken, before, view->path, error));
-    if (bends)
-        ADCGS_TRY(straighten(view, image, before, error));
-    return after > 1 ? reduce_image(image, &straight, after, view->path, error) : ADCGS_OK;
-}
-
-/** Returns planes; pixels that do not count are NaN. */
-static float *to_planes(const adcgs_image *image)
-{
-    const size_t plane = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
-    float *rgb = malloc(3 * plane * sizeof *rgb);
-    for (size_t i = 0; rgb && i < plane; i++)
-        for (size_t c = 0; c < 3; c++) {
-            const float *pixel = image->data + i * channels;
-            rgb[c * plane + i] = channels == 4 && pixel[3] < COUNTS ? (float)NAN : pixel[c];
-        }
-    return rgb;
-}
-
-/**
- * Divides an image by its excess of light. The true values of clipped pixels are unknown: they become NaN. Values that were not
- * clipped stay at most white.
- */
-static void compensate_light_step(const adcgs_scene_view *view, float *rgb, size_t plane)
-{
-    float by[3];
-    for (int c = 0; c < 3; c++)
-        by[c] = (float)exp2(-(double)view->stops[c]);
-    for (size_t i = 0; i < plane; i++) {
-        int burnt = 0;
-        for (size_t c = 0; c < 3; c++) {
-            float *const value = &rgb[c * plane + i];
-            const float most = fmaxf(*value, 1.0f);
-            burnt |= *value >= ADCGS_BURNT && by[c] < 1.0f;
-            *value = fminf(by[c] * *value, most);
-        }
-        for (size_t c = 0; burnt && c < 3; c++)
-            rgb[c * plane + i] = (float)NAN;
-    }
-}
-
-/** Reduces rows of an image to a row of each plane, with the values of shape() and to_planes(). */
-static void place_rows(float *rgb, size_t plane, size_t first, const source *s, int divide)
-{
-    const int keeps = divide == 1 && s->image->channels == 3;
-    for (int x = 0, at = 0; x < s->image->width; x += divide, at++) {
-        float value[4];
-        if (keeps)
-            memcpy(value, s->image->data + 3 * (size_t)x, 3 * sizeof *value);
-        else
-            average_box(s, x, 0, divide, value);
-        for (size_t c = 0; c < 3; c++)
-            rgb[c * plane + first + (size_t)at] = value[c];
-    }
-}
-
-/** Loads an image file and reduces it during reading, with memory for some rows in addition to the result. */
-static adcgs_status load_by_rows(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
-                                 adcgs_error *error)
-{
-    adcgs_image_rows *rows;
-    adcgs_image strip = {.data = NULL};
-    const source s = {&strip, NULL, scene->background};
-    int width, height, channels;
-    ADCGS_TRY(probe(view, view->path, error));
-    ADCGS_TRY(adcgs_image_rows_open(&rows, &width, &height, &channels, view->path, error));
-    const size_t across = (size_t)((width + divide - 1) / divide), plane = across * (size_t)((height + divide - 1) / divide);
-    adcgs_status status = check_size(view, view->path, width, height, error);
-    if (status == ADCGS_OK)
-        status = adcgs_image_alloc(&strip, width, ADCGS_MIN(divide, height), channels, view->path, error);
-    if (status == ADCGS_OK && !(*rgb = malloc(3 * plane * sizeof **rgb)))
-        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %dx%d pixels", view->path, width, height);
-    for (int y = 0; y < height && status == ADCGS_OK; y += divide) {
-        strip.height = ADCGS_MIN(divide, height - y);
-        status = adcgs_image_rows_read(rows, strip.height, strip.data, view->path, error);
+    rows r;
+    ADCGS_TRY(open_rows(&r, user, NULL, error));
+    float *const row = malloc((size_t)r.width * (size_t)r.channels * sizeof *row);
+    adcgs_status status = row ? adcgs_packed_image_init(packed, r.width, r.height, r.channels, r.path, error)
+                              : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", r.path);
+    for (int y = 0; y < r.height && status == ADCGS_OK; y++) {
+        status = read_rows(&r, 1, row, error);
         if (status == ADCGS_OK)
-            place_rows(*rgb, plane, (size_t)(y / divide) * across, &s, divide);
+            status = adcgs_packed_image_append(packed, row, 1, r.path, error);
     }
-    adcgs_image_rows_close(&rows);
+    free(row);
+    close_rows(&r);
+    return status;
+}
+
+/** Decodes a frame of a video for the scene to keep. */
+static adcgs_status pack_frame(void *user, adcgs_packed_image *packed, adcgs_error *error)
+{
+    const wanted *const w = user;
+    adcgs_image image;
+    ADCGS_TRY(decode_whole(w->scene, w->view, &image, error));
+    adcgs_status status = adcgs_packed_image_init(packed, image.width, image.height, image.channels, w->view->path, error);
+    if (status == ADCGS_OK)
+        status = adcgs_packed_image_append(packed, image.data, image.height, w->view->path, error);
+    adcgs_image_free(&image);
+    return status;
+}
+
+/** Takes an image that the scene keeps, or is to keep; NULL: it does not. */
+static adcgs_status take_kept(wanted *w, const adcgs_packed_image **kept, adcgs_error *error)
+{
+    const adcgs_scene_view *const view = w->view;
+    const int is_frame = view->is_video && !w->is_mask;
+    const int channels = w->is_mask ? 1 : w->scene->has_alpha ? 4 : 3;
+    int size[2];
+    *kept = NULL;
+    if (!w->scene->images || w->scene->splats)
+        return ADCGS_OK;
+    adcgs_view_size(view, size);
+    const uint64_t samples = (uint64_t)channels * (uint64_t)size[0] * (uint64_t)size[1];
+    /* Colours of a video are computed, and fit no smaller number. */
+    return adcgs_image_cache_take(w->scene->images, kept, w->is_mask ? view->mask : view->path, is_frame ? view->frame : -1,
+                                  is_frame ? samples * sizeof(float) : samples, is_frame ? pack_frame : pack_file, w, error);
+}
+
+static void give_kept(const adcgs_scene *scene, const adcgs_packed_image *kept)
+{
+    if (kept)
+        adcgs_image_cache_give(scene->images, kept);
+}
+
+static adcgs_status copy_kept(adcgs_image *image, const adcgs_packed_image *kept, const char *path, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_image_alloc(image, kept->width, kept->height, kept->channels, path, error));
+    adcgs_packed_image_rows(kept, 0, kept->height, image->data);
+    return ADCGS_OK;
+}
+
+/* ---- Loading ---- */
+
+/** Reduces an image while its rows are read, with memory for some rows in addition to the result. */
+static adcgs_status load_by_rows(wanted *w, const adcgs_packed_image *kept, int divide, float **rgb, adcgs_error *error)
+{
+    rows r;
+    adcgs_image strip = {.data = NULL};
+    const adcgs_image_source s = {&strip, NULL, w->scene->background};
+    ADCGS_TRY(open_rows(&r, w, kept, error));
+    const size_t across = (size_t)((r.width + divide - 1) / divide), plane = across * (size_t)((r.height + divide - 1) / divide);
+    adcgs_status status = adcgs_image_alloc(&strip, r.width, ADCGS_MIN(divide, r.height), r.channels, r.path, error);
+    if (status == ADCGS_OK && !(*rgb = malloc(3 * plane * sizeof **rgb)))
+        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %dx%d pixels", r.path, r.width, r.height);
+    for (int y = 0; y < r.height && status == ADCGS_OK; y += divide) {
+        strip.height = ADCGS_MIN(divide, r.height - y);
+        status = read_rows(&r, strip.height, strip.data, error);
+        if (status == ADCGS_OK)
+            adcgs_image_place_rows(*rgb, plane, (size_t)(y / divide) * across, &s, divide);
+    }
+    close_rows(&r);
     adcgs_image_free(&strip);
     if (status != ADCGS_OK) {
         free(*rgb);
@@ -285,69 +198,103 @@ static adcgs_status load_by_rows(const adcgs_scene *scene, const adcgs_scene_vie
     return status;
 }
 
-/** Loads the image as a whole, from a file, a video or splats, with its mask and its lens. */
-static adcgs_status load_whole(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
-                               adcgs_error *error)
+/** Reads a mask. keeps: from the scene's images, or into them. */
+static adcgs_status read_mask(const wanted *w, int keeps, adcgs_image *mask, adcgs_error *error)
 {
-    adcgs_image image, mask = {.data = NULL};
-    ADCGS_TRY(read_picture(scene, view, &image, error));
-    adcgs_status status = view->mask ? adcgs_view_mask_read(view, view->mask, &mask, error) : ADCGS_OK;
+    wanted hides = {w->scene, w->view, 1};
+    const adcgs_packed_image *kept = NULL;
+    if (keeps)
+        ADCGS_TRY(take_kept(&hides, &kept, error));
+    if (!kept) {
+        adcgs_image_cache_count(w->scene->images);
+        return adcgs_view_mask_read(w->view, w->view->mask, mask, error);
+    }
+    adcgs_status status = adcgs_view_mask_fits(w->view, w->view->mask, kept->width, kept->height, error);
     if (status == ADCGS_OK)
-        status = shape(scene, view, view->mask ? &mask : NULL, divide, &image, error);
-    if (status == ADCGS_OK && !(*rgb = to_planes(&image)))
+        status = copy_kept(mask, kept, w->view->mask, error);
+    give_kept(w->scene, kept);
+    return status == ADCGS_OK ? adcgs_view_mask_settle(w->view, w->view->mask, mask, error) : status;
+}
+
+/** Loads the image as a whole, from a file, a video or splats, with its mask and its lens. */
+static adcgs_status load_whole(wanted *w, const adcgs_packed_image *kept, int keeps, int divide, float **rgb, adcgs_error *error)
+{
+    const adcgs_scene_view *const view = w->view;
+    adcgs_image image, mask = {.data = NULL};
+    if (kept)
+        ADCGS_TRY(check_size(view, view->path, kept->width, kept->height, error));
+    ADCGS_TRY(kept ? copy_kept(&image, kept, view->path, error) : decode_whole(w->scene, view, &image, error));
+    adcgs_status status = view->mask ? read_mask(w, keeps, &mask, error) : ADCGS_OK;
+    if (status == ADCGS_OK)
+        status = adcgs_image_shape(w->scene, view, view->mask ? &mask : NULL, divide, &image, error);
+    if (status == ADCGS_OK && !(*rgb = adcgs_image_planes(&image)))
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->path);
     adcgs_image_free(&image);
     adcgs_image_free(&mask);
     return status;
 }
 
-adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
-                              adcgs_camera *camera, adcgs_error *error)
+static int has_stops(const adcgs_scene_view *view)
 {
+    return view->stops[0] != 0.0f || view->stops[1] != 0.0f || view->stops[2] != 0.0f;
+}
+
+/** keeps: from the scene's images, or into them. */
+static adcgs_status load(const adcgs_scene *scene, const adcgs_scene_view *view, int keeps, int divide, float **rgb,
+                         adcgs_camera *camera, adcgs_error *error)
+{
+    wanted w = {scene, view, 0};
     adcgs_camera seen = view->camera;
+    const adcgs_packed_image *kept = NULL;
     *rgb = NULL;
     if (divide < 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
-    divide_camera(&seen, divide);
-    const int is_plain = !scene->splats && !view->is_video && !view->mask && view->lens.width <= 0;
-    ADCGS_TRY((is_plain ? load_by_rows : load_whole)(scene, view, divide, rgb, error));
-    if (view->stops[0] != 0.0f || view->stops[1] != 0.0f || view->stops[2] != 0.0f)
-        compensate_light_step(view, *rgb, (size_t)seen.width * (size_t)seen.height);
+    adcgs_camera_divide(&seen, divide);
+    if (keeps)
+        ADCGS_TRY(take_kept(&w, &kept, error));
+    const int by_rows = !scene->splats && (kept || !view->is_video) && !view->mask && view->lens.width <= 0;
+    const adcgs_status status =
+        by_rows ? load_by_rows(&w, kept, divide, rgb, error) : load_whole(&w, kept, keeps, divide, rgb, error);
+    give_kept(scene, kept);
+    ADCGS_TRY(status);
+    if (has_stops(view))
+        adcgs_image_even_light(view, *rgb, (size_t)seen.width * (size_t)seen.height);
     if (camera)
         *camera = seen;
     return ADCGS_OK;
 }
 
-/* ---- Moving regions ---- */
-
-/** Replaces an image of any colours by one channel: 1 where it is not black, else 0. */
-static adcgs_status to_zero_and_one(adcgs_image *image, const char *path, adcgs_error *error)
+adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
+                              adcgs_camera *camera, adcgs_error *error)
 {
-    adcgs_image out;
-    ADCGS_TRY(adcgs_image_alloc(&out, image->width, image->height, 1, path, error));
-    for (size_t i = 0; i < (size_t)out.width * (size_t)out.height; i++)
-        out.data[i] = is_seen(image, i) ? 1.0f : 0.0f;
-    adcgs_image_free(image);
-    *image = out;
-    return ADCGS_OK;
+    return load(scene, view, 0, divide, rgb, camera, error);
 }
 
-adcgs_status adcgs_scene_load_moving(const adcgs_scene_view *view, int divide, uint8_t **moving, adcgs_error *error)
+adcgs_status adcgs_scene_image(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
+                               adcgs_camera *camera, adcgs_error *error)
 {
-    adcgs_image image;
-    const source straight = {&image, NULL, NULL};
-    *moving = NULL;
-    ADCGS_TRY(adcgs_view_mask_read(view, view->moving, &image, error));
-    adcgs_status status = to_zero_and_one(&image, view->moving, error);
-    if (status == ADCGS_OK && view->lens.width > 0)
-        status = straighten(view, &image, 1, error);
-    if (status == ADCGS_OK && divide > 1)
-        status = reduce_image(&image, &straight, divide, view->moving, error);
-    const size_t plane = (size_t)image.width * (size_t)image.height;
-    if (status == ADCGS_OK && !(*moving = malloc(plane)))
-        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->moving);
-    for (size_t i = 0; status == ADCGS_OK && i < plane; i++)
-        (*moving)[i] = image.data[i * (size_t)image.channels] >= COUNTS;
-    adcgs_image_free(&image);
+    return load(scene, view, 1, divide, rgb, camera, error);
+}
+
+adcgs_status adcgs_scene_borrow(const adcgs_scene *scene, const adcgs_scene_view *view, int divide,
+                                const adcgs_packed_image **out, adcgs_error *error)
+{
+    wanted w = {scene, view, 0};
+    *out = NULL;
+    if (divide != 1 || view->mask || view->lens.width > 0 || has_stops(view) || view->is_video || scene->has_alpha)
+        return ADCGS_OK;
+    ADCGS_TRY(take_kept(&w, out, error));
+    if (!*out)
+        return ADCGS_OK;
+    const adcgs_status status = check_size(view, view->path, (*out)->width, (*out)->height, error);
+    if (status == ADCGS_OK && (*out)->channels == 3 && (*out)->bytes <= 2)
+        return ADCGS_OK;
+    give_kept(scene, *out);
+    *out = NULL;
     return status;
+}
+
+void adcgs_scene_give_back(const adcgs_scene *scene, const adcgs_packed_image *image)
+{
+    give_kept(scene, image);
 }

@@ -5,6 +5,7 @@
 #include "scene/scene.h"
 
 #include "scene/clips.h"
+#include "scene/image_cache.h"
 #include "scene/splat_views.h"
 
 #include <stdarg.h>
@@ -60,6 +61,7 @@ void adcgs_scene_free(adcgs_scene **scene)
     adcgs_points_free(&(*scene)->points);
     adcgs_splat_scene_free(&(*scene)->splats);
     adcgs_clips_free(&(*scene)->clips);
+    adcgs_image_cache_free(&(*scene)->images);
     free((*scene)->directory);
     free((*scene)->sound);
     free(*scene);

@@ -21,6 +21,7 @@
 #include "media/video/fps.h"
 #include "scene/frames.h"
 #include "scene/lens.h"
+#include "scene/packed_image.h"
 
 #include <adcgs/types.h>
 
@@ -80,8 +81,9 @@ typedef struct adcgs_scene {
     int measured;                      /**< factor that reduces images for measuring a stream on them; 0 or 1: full size */
     char remarks[ADCGS_REMARKS_MAX][ADCGS_REMARK_BYTES]; /**< lines to print before training */
     int n_remarks;
-    struct adcgs_clips *clips;       /**< open videos (clips.h) */
-    const struct adcgs_scene *whole; /**< the whole scene if this is a part in time (part.h); else NULL */
+    struct adcgs_clips *clips;        /**< open videos (clips.h) */
+    struct adcgs_image_cache *images; /**< decoded images (image_cache.h); NULL: none are kept */
+    const struct adcgs_scene *whole;  /**< the whole scene if this is a part in time (part.h); else NULL */
 } adcgs_scene;
 
 void adcgs_scene_free(adcgs_scene **scene);
@@ -113,6 +115,19 @@ adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
  */
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                               adcgs_camera *camera, adcgs_error *error);
+/**
+ * As adcgs_scene_load(), to the same values, from a decoded image that the scene keeps. If there is room for it in scene->images,
+ * it is kept for the next call. All rooms above this one call this function.
+ */
+adcgs_status adcgs_scene_image(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
+                               adcgs_camera *camera, adcgs_error *error);
+/**
+ * Borrows a kept image instead of a copy, until adcgs_scene_give_back(). *out NULL: it has other values than the result of
+ * adcgs_scene_image(), more than 16 bits, or no room.
+ */
+adcgs_status adcgs_scene_borrow(const adcgs_scene *scene, const adcgs_scene_view *view, int divide,
+                                const adcgs_packed_image **out, adcgs_error *error);
+void adcgs_scene_give_back(const adcgs_scene *scene, const adcgs_packed_image *image);
 /**
  * Loads the ground truth of moving regions, for a view that has `moving`. The result has the size of the image reduced by
  * `divide`: 1 where something moves (where that file is not black), else 0. It is undistorted and reduced like the image; then

@@ -25,7 +25,7 @@ typedef struct adcgs_thumbnail {
     float tints[2][ADCGS_THUMBNAIL_TINTS];
 } adcgs_thumbnail;
 
-/** Computes the thumbnail of a planar image [3][height][width] from adcgs_scene_load(), in which unknown pixels are NaN. */
+/** Computes the thumbnail of a planar image [3][height][width] from adcgs_scene_image(), in which unknown pixels are NaN. */
 void adcgs_thumbnail_compute(adcgs_thumbnail *thumbnail, const float *rgb, int width, int height);
 
 /** Mean absolute difference of the cells known in both; NaN if there are none. */

@@ -13,11 +13,9 @@ void adcgs_view_size(const adcgs_scene_view *view, int wanted[2])
     wanted[1] = bends ? view->lens.height : view->camera.height;
 }
 
-/** Accepts masks of full size for reduced images, and vice versa. */
-static adcgs_status check_mask_size(const adcgs_scene_view *view, const char *path, int *channels, adcgs_error *error)
+adcgs_status adcgs_view_mask_fits(const adcgs_scene_view *view, const char *path, int width, int height, adcgs_error *error)
 {
-    int width, height, wanted[2];
-    ADCGS_TRY(adcgs_image_probe(&width, &height, channels, path, error));
+    int wanted[2];
     adcgs_view_size(view, wanted);
     if (adcgs_mask_fits(width, height, wanted[0], wanted[1]))
         return ADCGS_OK;
@@ -27,11 +25,22 @@ static adcgs_status check_mask_size(const adcgs_scene_view *view, const char *pa
                       path, width, height, wanted[0], wanted[1]);
 }
 
-/** Reads a mask whose size was checked. */
-static adcgs_status read_mask(const adcgs_scene_view *view, const char *path, adcgs_image *mask, adcgs_error *error)
+static adcgs_status check_mask_size(const adcgs_scene_view *view, const char *path, int *channels, adcgs_error *error)
+{
+    int width, height;
+    ADCGS_TRY(adcgs_image_probe(&width, &height, channels, path, error));
+    return adcgs_view_mask_fits(view, path, width, height, error);
+}
+
+adcgs_status adcgs_view_mask_check(const adcgs_scene_view *view, const char *path, adcgs_error *error)
+{
+    int channels;
+    return check_mask_size(view, path, &channels, error);
+}
+
+adcgs_status adcgs_view_mask_settle(const adcgs_scene_view *view, const char *path, adcgs_image *mask, adcgs_error *error)
 {
     int wanted[2];
-    ADCGS_TRY(adcgs_image_read(mask, path, error));
     adcgs_view_size(view, wanted);
     adcgs_status status = adcgs_mask_settle(mask, path, error);
     if (status == ADCGS_OK)
@@ -41,10 +50,16 @@ static adcgs_status read_mask(const adcgs_scene_view *view, const char *path, ad
     return status;
 }
 
+/** Reads a mask whose size was checked. */
+static adcgs_status read_mask(const adcgs_scene_view *view, const char *path, adcgs_image *mask, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_image_read(mask, path, error));
+    return adcgs_view_mask_settle(view, path, mask, error);
+}
+
 adcgs_status adcgs_view_mask_read(const adcgs_scene_view *view, const char *path, adcgs_image *mask, adcgs_error *error)
 {
-    int channels;
-    ADCGS_TRY(check_mask_size(view, path, &channels, error));
+    ADCGS_TRY(adcgs_view_mask_check(view, path, error));
     return read_mask(view, path, mask, error);
 }
 

@@ -2,6 +2,7 @@
 /** \file Memory and disk space for a run's images. */
 #include "session/enc_image_space.h"
 
+#include "scene/image_cache.h"
 #include "scene/image_store.h"
 #include "scene/spool.h"
 #include "system/text.h"
@@ -56,6 +57,15 @@ adcgs_status adcgs_enc_report_space(adcgs_enc_context *w, adcgs_error *error)
     }
     free(folder);
     return ADCGS_OK;
+}
+
+void adcgs_enc_keep_images(const adcgs_enc_job *job, const adcgs_scene *scene)
+{
+    const int ranks = job->ranks ? ADCGS_MAX(job->ranks->local_size, 1) : 1; /* of a host, which share its memory */
+    const uint64_t room = adcgs_image_store_default_memory() / (uint64_t)ranks;
+    const uint64_t need = adcgs_image_store_least(scene, ADCGS_SPLIT_TRAIN, job->config.scale);
+    if (scene->images)
+        adcgs_image_cache_limit(scene->images, job->o->memory ? job->o->memory : ADCGS_MIN(need, room));
 }
 
 void adcgs_enc_report_no_space(adcgs_enc_context *w)

@@ -10,6 +10,11 @@
  * case.
  */
 adcgs_status adcgs_enc_report_space(adcgs_enc_context *w, adcgs_error *error);
+/**
+ * Lets the scene keep decoded images while it is trained: with --memory up to that limit, else without more memory than the
+ * training needs for its images at full size.
+ */
+void adcgs_enc_keep_images(const adcgs_enc_job *job, const adcgs_scene *scene);
 /** Reports loaded images without space that was not foreseen to be missing. Once. */
 void adcgs_enc_report_no_space(adcgs_enc_context *w);
 

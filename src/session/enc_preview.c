@@ -55,7 +55,7 @@ static adcgs_status write_preview(const char *path, const adcgs_scene *scene, ad
     adcgs_mosaic mosaic;
     adcgs_camera camera;
     float *taken;
-    ADCGS_TRY(adcgs_scene_load(scene, view, (side + SIDE_MOST - 1) / SIDE_MOST, &taken, &camera, error));
+    ADCGS_TRY(adcgs_scene_image(scene, view, (side + SIDE_MOST - 1) / SIDE_MOST, &taken, &camera, error));
     adcgs_status status = adcgs_mosaic_init(&mosaic, camera.width, camera.height, 2, 1, path, error);
     if (status == ADCGS_OK)
         status = place(&mosaic, t, view, &camera, taken, error);

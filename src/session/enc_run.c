@@ -258,6 +258,7 @@ adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, con
     adcgs_trainer_input input = {.before = before,
                                  .details = job->plan && job->plan->has_details ? &job->plan->details : NULL,
                                  .judges_poses = tells && !w->diagnosed}; /* by the first part of a scene */
+    adcgs_enc_keep_images(job, scene);
     ADCGS_TRY(adcgs_trainer_create_from(&w->t, scene, &job->config, &input, job->cpu, job->pool, error));
     if (!before && otherwise && !adcgs_params_equal(&w->t->f->params, &otherwise->params)) {
         adcgs_trainer_free(&w->t);
@@ -304,6 +305,8 @@ void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_scene *scene, adcgs_progre
                        scene->directory, side, job->config.scale);
     }
     scene->measured = job->config.scale;
+    if (!job->o->has_segment && !job->o->live)
+        adcgs_enc_keep_images(job, scene);
 }
 
 static int looking(void *user, uint32_t done, uint32_t n)

@@ -17,7 +17,7 @@ adcgs_status adcgs_plan_details(const adcgs_scene *scene, int divide, uint32_t *
         adcgs_camera camera;
         float *rgb;
         uint32_t here;
-        ADCGS_TRY(adcgs_scene_load(scene, view, divide, &rgb, &camera, error));
+        ADCGS_TRY(adcgs_scene_image(scene, view, divide, &rgb, &camera, error));
         const adcgs_status status = adcgs_detail(rgb, (int)camera.width, (int)camera.height, &here, error);
         free(rgb);
         ADCGS_TRY(status);

@@ -9,6 +9,7 @@
 #include "media/video/video.h"
 #include "scene/camera_json.h"
 #include "scene/clips.h"
+#include "scene/image_cache.h"
 #include "scene/extent.h"
 #include "scene/layouts/captures.h"
 #include "scene/layouts/colmap.h"
@@ -367,6 +368,8 @@ adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_s
     scene->directory = folder_of(path, S_ISDIR(status.st_mode));
     adcgs_status result = scene->directory ? adcgs_clips_create(&scene->clips, error)
                                            : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (result == ADCGS_OK)
+        result = adcgs_image_cache_create(&scene->images, error);
     if (result == ADCGS_OK)
         result = fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error);
     if (result != ADCGS_OK)

@@ -93,7 +93,7 @@ static adcgs_status full_psnr(adcgs_trainer *t, uint32_t index, double *psnr, ad
     adcgs_camera camera;
     adcgs_view view;
     float *taken;
-    ADCGS_TRY(adcgs_scene_load(t->scene, &t->scene->views[ADCGS_SPLIT_TRAIN][index], 1, &taken, &camera, error));
+    ADCGS_TRY(adcgs_scene_image(t->scene, &t->scene->views[ADCGS_SPLIT_TRAIN][index], 1, &taken, &camera, error));
     float *image = adcgs_alloc(NULL, 3 * (size_t)camera.width * (size_t)camera.height, sizeof *image, error);
     adcgs_status status = image ? adcgs_view_init(&view, &camera, t->origin, t->scale, error) : adcgs_alloc_status(error);
     if (status == ADCGS_OK)

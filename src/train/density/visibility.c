@@ -25,7 +25,7 @@ adcgs_status adcgs_visibility_init(adcgs_visibility *s, const adcgs_scene *scene
     ADCGS_TRY(adcgs_scene_frame(scene, s->origin, &s->scale, error));
     for (uint32_t i = 0; i < n; i++) {
         const adcgs_scene_view *view = &scene->views[ADCGS_SPLIT_TRAIN][(uint64_t)i * all / n];
-        const adcgs_status status = adcgs_scene_load(scene, view, 4, &s->rgb[i], &s->camera[i], error);
+        const adcgs_status status = adcgs_scene_image(scene, view, 4, &s->rgb[i], &s->camera[i], error);
         if (status != ADCGS_OK) {
             adcgs_visibility_clear(s);
             return status;

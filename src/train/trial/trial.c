@@ -133,7 +133,7 @@ static adcgs_status judge_view(adcgs_trainer *t, const adcgs_scene_view *v, int 
     adcgs_camera camera;
     adcgs_view view;
     float *taken;
-    ADCGS_TRY(adcgs_scene_load(t->scene, v, t->divide, &taken, &camera, error));
+    ADCGS_TRY(adcgs_scene_image(t->scene, v, t->divide, &taken, &camera, error));
     const size_t plane = (size_t)camera.width * (size_t)camera.height;
     float *const image = adcgs_alloc(NULL, 6 * plane, sizeof *image, error);
     adcgs_status status = image ? adcgs_view_init(&view, &camera, t->origin, t->scale, error) : adcgs_alloc_status(error);

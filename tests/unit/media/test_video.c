@@ -5,6 +5,7 @@
 #include "base/thread_pool.h"
 #include "media/video/video.h"
 #include "scene/clips.h"
+#include "scene/image_cache.h"
 #include "scene/scene.h"
 
 #include <math.h>
@@ -324,6 +325,30 @@ static void test_clips(void **state)
     adcgs_pool_free(&pool);
 }
 
+/** Frames that the scene keeps equal those of the video, and are not decoded again. */
+static void test_kept_frames(void **state)
+{
+    adcgs_scene scene = {.clips = make_views()};
+    adcgs_scene direct = scene;
+    uint64_t decoded, kept;
+    expect_good(adcgs_image_cache_create(&scene.images, &error));
+    adcgs_image_cache_limit(scene.images, 1 << 20);
+    for (int divide = 1; divide <= 4; divide++)
+        for (int i = 0; i < VIDEOS * FRAMES; i += VIDEOS) {
+            float *got, *want;
+            const size_t side = (size_t)((32 + divide - 1) / divide);
+            expect_good(adcgs_scene_image(&scene, &views[i], divide, &got, NULL, &error));
+            expect_good(adcgs_scene_load(&direct, &views[i], divide, &want, NULL, &error));
+            assert_memory_equal(got, want, 3 * side * side * sizeof *got);
+            free(got);
+            free(want);
+        }
+    adcgs_image_cache_facts(scene.images, &decoded, &kept);
+    assert_int_equal(decoded, FRAMES);
+    adcgs_image_cache_free(&scene.images);
+    adcgs_clips_free(&scene.clips);
+}
+
 #else
 
 static void test_without(void **state)
@@ -349,9 +374,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_names),
 #ifdef HAVE_FFMPEG
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_same_bytes),     cmocka_unit_test(test_any_order),
-        cmocka_unit_test(test_no_video),   cmocka_unit_test(test_truncated),      cmocka_unit_test(test_listed),
-        cmocka_unit_test(test_damaged),    cmocka_unit_test(test_write_failures), cmocka_unit_test(test_clips),
+        cmocka_unit_test(test_round_trip),  cmocka_unit_test(test_same_bytes),     cmocka_unit_test(test_any_order),
+        cmocka_unit_test(test_no_video),    cmocka_unit_test(test_truncated),      cmocka_unit_test(test_listed),
+        cmocka_unit_test(test_damaged),     cmocka_unit_test(test_write_failures), cmocka_unit_test(test_clips),
+        cmocka_unit_test(test_kept_frames),
 #else
         cmocka_unit_test(test_without),
 #endif
