@@ -151,7 +151,7 @@ def run(tree, info, points, jobs=2, only=None, every=1):
     counts, faults = dict.fromkeys(POINTS, 0), []
     if not work:
         return ["no vectors"], counts
-    with multiprocessing.Pool(jobs, _start, (tree.master(),)) as pool:
+    with multiprocessing.Pool(min(jobs, len(work)), _start, (tree.master(),)) as pool:
         for name, found, part in pool.imap_unordered(_check, work):
             faults += ["%s: %s" % (name, fault) for fault in found]
             for point in POINTS:

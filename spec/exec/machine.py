@@ -57,9 +57,12 @@ def _cut(data, low, high):
 
 
 def _little(value, n):
-    if type(value) is not int or not -(1 << 8 * n - 1) <= value < 1 << 8 * n:
-        raise NotationError("%r in %d bytes" % (value, n))
-    return list((value & (1 << 8 * n) - 1).to_bytes(n, "little"))
+    if type(value) is int:
+        try:
+            return list(value.to_bytes(n, "little", signed=value < 0))
+        except OverflowError:
+            pass
+    raise NotationError("%r in %d bytes" % (value, n))
 
 
 def _require(condition, kind):
@@ -71,8 +74,9 @@ def _require(condition, kind):
 
 def _integers(name, function):
     def checked(*values):
-        if any(type(v) is not int for v in values):
-            raise NotationError("%s of %r" % (name, values))
+        for value in values:
+            if type(value) is not int:
+                raise NotationError("%s of %r" % (name, values))
         return function(*values)
     return checked
 
