@@ -4,7 +4,7 @@
 scene=$dir/scene
 tiny_scene "$scene"
 # Good quality would need more iterations; most of these tests do not depend on quality.
-short="--preset draft --max-anchors 300 --iterations 100 --quiet"
+short="--preset draft --max-anchors 100 --iterations 100 --quiet --threads 1"
 live="$short --segment 0.1 --key 0.1"
 export TMPDIR="$dir"
 

@@ -10,8 +10,8 @@ make()
 {
     name=$1 scene=$2 iterations=$3
     shift 3
-    ./adcgs-demo-scene --scene "$scene" --size 96x72 "$@" -o "$dir/$name" -q &&
-        ./adcgs-enc "$dir/$name" -o "$dir/$name.adcgs" --preset draft --set trial_share=0 -n "$iterations" -q ||
+    ./adcgs-demo-scene --scene "$scene" --size 48x36 "$@" -o "$dir/$name" -q &&
+        ./adcgs-enc "$dir/$name" -o "$dir/$name.adcgs" --preset draft --set trial_share=0 --threads 1 -n "$iterations" -q ||
         bad "$name: not encoded"
 }
 

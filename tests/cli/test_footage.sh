@@ -12,12 +12,13 @@ film()
 {
     name=$1
     shift
-    ./adcgs-demo-scene --size "${size:-32x32}" --format ppm --threads 2 -o "$dir/$name" -q "$@" || bad "adcgs-demo-scene $*"
+    ./adcgs-demo-scene --size "${size:-32x32}" --format ppm -o "$dir/$name" -q "$@" || bad "adcgs-demo-scene $*"
 }
 # look NAME: train the scene for a few iterations; the encoder's messages go to $dir/NAME.err.
 look()
 {
-    ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --preset draft --set matching_frames=${moments:-0} -n 10 --threads 2 ${quiet:-} ${even:-} >"$dir/out" \
+    ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --preset draft --set matching_frames=${moments:-0} \
+        --max-anchors 60 -n 10 --threads 1 ${quiet:-} ${even:-} >"$dir/out" \
         2>"$dir/$1.err" ||
         { bad "adcgs-enc of $1"; cat "$dir/$1.err"; }
 }
@@ -103,10 +104,11 @@ evened()
 }
 evened step 'the images of all cameras become 0.87 times as bright: this and all other steps of light are evened out'
 evened tint 'the images of all cameras become 0.87 times as blue relative to green: this and all other steps of light are evened out'
-evened sync 'sync: exposure_step_compensation: no steps of light found'
+evened pass 'pass: exposure_step_compensation: no steps of light found'
 even=
 # Segments are cut from a scene whose steps are removed already: one report, with the same text.
-./adcgs-enc "$dir/step" -o "$dir/cut.adcgs" --preset draft --set matching_frames=0,exposure_step_compensation=1 --segment 0.3 -n 10 --threads 2 2>"$dir/cut.err" ||
+./adcgs-enc "$dir/step" -o "$dir/cut.adcgs" --preset draft --max-anchors 60 \
+    --set matching_frames=0,exposure_step_compensation=1 --segment 0.3 -n 10 --threads 1 2>"$dir/cut.err" ||
     { bad "segments with exposure_step_compensation"; cat "$dir/cut.err"; }
 [ "$(grep -c 'steps of light are evened out' "$dir/cut.err")" -eq 1 ] || { bad "not told once of segments"; cat "$dir/cut.err"; }
 grep "check exposure\|check white" "$dir/cut.err" && bad "what was evened before it was cut is a doubt"

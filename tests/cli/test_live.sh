@@ -180,7 +180,7 @@ expect 4 "ended with a single frame time" ./adcgs-enc --live "$dir/none" -o "$di
     { bad "--delay"; cat "$dir/err"; }
 grep -q '"most_iterations": 200' "$dir/out" && grep -q '"delay": 0.11' "$dir/out" && grep -q '"segments": 3' "$dir/out" ||
     { bad "the delay has no effect"; cat "$dir/out"; }
-./adcgs-enc --live "$dir/all" -o "$dir/late.adcgs" --preset draft --max-anchors 300 --iterations 60 --segment 0.1 --delay 100 \
+./adcgs-enc --live "$dir/all" -o "$dir/late.adcgs" --preset draft --max-anchors 100 --iterations 60 --segment 0.1 --delay 100 \
     >"$dir/out" 2>"$dir/err" || { bad "--delay"; cat "$dir/err"; }
 grep -q '3 segments of 0.233333 s together' "$dir/err" && grep -q '100 s requested' "$dir/err" ||
     { bad "summary"; cat "$dir/err"; }

@@ -7,7 +7,7 @@ need adcgs-enc adcgs-dec adcgs-info adcgs-demo-scene
 
 scene=$dir/scene
 tiny_scene "$scene"
-short="--preset draft --max-anchors 300 --iterations 200"
+short="--preset draft --max-anchors 120 --set matching_frames=2 --iterations 200"
 
 # enc NAME OPTIONS...: encode the scene to NAME.adcgs.
 enc()
@@ -86,8 +86,11 @@ case $said in
 esac
 # Where segments are better (ADCGS_FULL=1), they are the same as without --or-whole.
 if [ "${ADCGS_FULL:-}" = 1 ]; then
-    enc frozen --segment 0.07 --without deformation,rate --set n_fg=8 --iterations 1000
-    better cut --segment 0.07 --without deformation,rate --set n_fg=8 --iterations 1000
+    frozen="--max-anchors 300 --set matching_frames=48,n_fg=8 --without deformation,rate --iterations 1000"
+    # shellcheck disable=SC2086
+    enc frozen --segment 0.07 $frozen
+    # shellcheck disable=SC2086
+    better cut --segment 0.07 $frozen
     case $said in
         *" the segments") same frozen cut "segments, but others" ;;
         *) bad "a motionless scene is no better in segments: $said" ;;
@@ -140,7 +143,7 @@ fade()
 {
     name=$1
     shift
-    ./adcgs-enc "$dir/turn" -o "$dir/$name.adcgs" --preset draft --max-anchors 200 --iterations 60 --segment 0.4 "$@" \
+    ./adcgs-enc "$dir/turn" -o "$dir/$name.adcgs" --preset draft --max-anchors 80 --iterations 60 --segment 0.4 --threads 1 "$@" \
         >"$dir/out" 2>&1 || { bad "exit code $?: adcgs-enc $*"; cat "$dir/out"; }
 }
 reach() { ./adcgs-info "$dir/$1.adcgs" | sed -n 's/^  crossfade of \(.*\) s into the next$/\1/p' | xargs; }
