@@ -44,7 +44,7 @@ static void tell(const adcgs_enc_context *w, const adcgs_image_store_need *need,
 adcgs_status adcgs_enc_report_space(adcgs_enc_context *w, adcgs_error *error)
 {
     const adcgs_trainer *const t = w->t;
-    const adcgs_image_store_config config = {.split = ADCGS_SPLIT_TRAIN, .divide = t->config.scale, .memory = t->picture_memory};
+    const adcgs_image_store_config config = {.split = ADCGS_SPLIT_TRAIN, .divide = t->config.scale, .memory = t->views.memory};
     adcgs_image_store_need need;
     if (w->told_room)
         return ADCGS_OK;
@@ -71,11 +71,11 @@ void adcgs_enc_keep_images(const adcgs_enc_job *job, const adcgs_scene *scene)
 void adcgs_enc_report_no_space(adcgs_enc_context *w)
 {
     const char *why;
-    const uint32_t n = w->t->pictures ? adcgs_image_store_decoded_again(w->t->pictures, &why) : 0;
+    const uint32_t n = w->t->views.store ? adcgs_image_store_decoded_again(w->t->views.store, &why) : 0;
     if (!n || w->told_room == 2)
         return;
     adcgs_progress_clear(&w->progress);
     adcgs_cli_note(w->progress.cli, "no room for %u of %u image%s (%s): decoded again for each use, which is slow", n,
-                   w->t->n_views, adcgs_s(w->t->n_views), why);
+                   w->t->views.n, adcgs_s(w->t->views.n), why);
     w->told_room = 2;
 }

@@ -24,7 +24,7 @@ static const adcgs_scene_view *choose(const adcgs_scene *scene)
 static adcgs_status draw(float *image, adcgs_trainer *t, const adcgs_scene_view *of, const adcgs_camera *camera,
                          adcgs_error *error)
 {
-    const adcgs_pass_mode mode = {.quant = t->rounding && !t->frozen ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NONE,
+    const adcgs_pass_mode mode = {.quant = t->stage.rounding && !t->stage.frozen ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NONE,
                                   .deform = ADCGS_DEFORM_ALL};
     adcgs_view view;
     ADCGS_TRY(adcgs_view_init(&view, camera, t->origin, t->scale, error));
@@ -75,10 +75,10 @@ void adcgs_enc_preview_show(adcgs_enc_preview *preview, adcgs_trainer *t, const 
 {
     const int another = !stage || !preview->stage || strcmp(stage, preview->stage);
     adcgs_error why = {ADCGS_OK, ""};
-    if (!preview->path || !t->divide || (!another && fabs(t->elapsed.clock - preview->drawn) < EVERY))
+    if (!preview->path || !t->views.divide || (!another && fabs(t->run.elapsed.clock - preview->drawn) < EVERY))
         return;
     preview->stage = stage;
-    preview->drawn = t->elapsed.clock;
+    preview->drawn = t->run.elapsed.clock;
     if (write_preview(preview->path, t->scene, t, &why) == ADCGS_OK || preview->failed)
         return;
     preview->failed = 1;

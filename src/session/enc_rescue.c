@@ -11,7 +11,7 @@
 
 int adcgs_enc_is_ready(const adcgs_enc_context *w)
 {
-    return w->o->output && !w->segments && w->t->iteration;
+    return w->o->output && !w->segments && w->t->run.iteration;
 }
 
 /** Returns the same base name in the folder of temporary files, from malloc(). */
@@ -27,7 +27,7 @@ adcgs_status adcgs_enc_save(const adcgs_enc_context *w, const char *name, int re
 {
     adcgs_error ignored;
     adcgs_status status = reads_images ? adcgs_trainer_save(w->t, name, error) : adcgs_trainer_rescue(w->t, name, error);
-    if (status != ADCGS_OK && !w->t->has_content && reads_images) /* unreadable images must not prevent saving the state */
+    if (status != ADCGS_OK && !w->t->views.has_content && reads_images) /* unreadable images must not prevent saving the state */
         status = adcgs_trainer_rescue(w->t, name, error);
     *path = status == ADCGS_OK ? strdup(name) : name_elsewhere(name);
     if (status != ADCGS_OK && *path && adcgs_trainer_rescue(w->t, *path, &ignored) == ADCGS_OK)
@@ -61,7 +61,7 @@ void adcgs_enc_rescue(const adcgs_cli *cli, adcgs_enc_context *w, adcgs_status s
         return;
     adcgs_progress_clear(&w->progress);
     if (adcgs_enc_save(w, w->state, 0, &path, &why) != ADCGS_OK)
-        adcgs_cli_error(cli, ADCGS_OK, "a failure ends the run at iteration %u, and its state is lost: %s", w->t->iteration,
+        adcgs_cli_error(cli, ADCGS_OK, "a failure ends the run at iteration %u, and its state is lost: %s", w->t->run.iteration,
                         why.text);
     else
         adcgs_enc_report_continuation(cli, w, "a failure ends the run: the state is saved", path);

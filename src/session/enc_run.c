@@ -39,13 +39,13 @@ static void save_now_and_then(adcgs_enc_context *w, double seconds)
 static void free_thumbnails(adcgs_enc_context *w)
 {
     adcgs_free(NULL, w->thumbnails);
-    w->t->thumbnails = w->thumbnails = NULL;
+    w->t->views.thumbnails = w->thumbnails = NULL;
 }
 
 /** Checks the footage once its images are loaded, before hours are spent on it. */
 static void look_at_footage(adcgs_enc_context *w)
 {
-    if (!w->thumbnails || !w->t->divide)
+    if (!w->thumbnails || !w->t->views.divide)
         return;
     adcgs_progress_clear(&w->progress);
     const adcgs_footage_facts facts = {w->t->scene, w->begins, &w->t->stereo, w->thumbnails};
@@ -65,14 +65,14 @@ static int observe(void *user, const adcgs_train_report *r)
         snprintf(attempt, sizeof attempt, "try %d: ", r->attempt);
     int stops = 0;
     look_at_footage(w);
-    if (w->t->divide)
+    if (w->t->views.divide)
         adcgs_enc_report_no_space(w);
     w->last = *r;
     if (r->iteration && !w->first.iteration)
         w->first = *r;
     if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back, and so does another try */
         adcgs_enc_log_last(w);
-    if (w->t->divide) /* contrast determines lambda once the images are loaded */
+    if (w->t->views.divide) /* contrast determines lambda once the images are loaded */
         adcgs_enc_log_settings(w);
     if (w->on_progress)
         stops = w->on_progress(w->progress_user, w);
@@ -93,7 +93,7 @@ static int loading(void *user, uint32_t done, uint32_t n)
     if (!w->on_progress)
         adcgs_progress_show(&w->progress, "images    %6u/%u", done, n);
     /* Later there is a run to save, after the images are loaded. */
-    return adcgs_interrupted() && !w->t->iteration && !w->is_live;
+    return adcgs_interrupted() && !w->t->run.iteration && !w->is_live;
 }
 
 /* ---- Notes in the stream ---- */
@@ -101,8 +101,8 @@ static int loading(void *user, uint32_t done, uint32_t n)
 void adcgs_enc_make_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes)
 {
     snprintf(n->seed, sizeof n->seed, "%llu", (unsigned long long)t->config.seed);
-    snprintf(n->lambda, sizeof n->lambda, "%g", t->lambda);
-    snprintf(n->iterations, sizeof n->iterations, "%u", t->iteration);
+    snprintf(n->lambda, sizeof n->lambda, "%g", t->rate.lambda);
+    snprintf(n->iterations, sizeof n->iterations, "%u", t->run.iteration);
     adcgs_decisions_format(&t->decisions, n->decisions);
     const adcgs_encode_note list[] = {
         {"encoder", "adcgs-enc " PACKAGE_VERSION},
@@ -160,13 +160,13 @@ static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_context *w, adcgs_err
         adcgs_cli_error(cli, ADCGS_OK,
                         "%s: at iteration %u of %u nothing moves yet: the file shows a static, coarse scene; a "
                         "run of -n %u shows far more",
-                        w->target, w->t->iteration, w->t->config.iterations, ADCGS_MAX(w->t->iteration, 300));
-    adcgs_progress_show(&w->progress, "finish  the state after iteration %u ...", w->t->iteration);
+                        w->target, w->t->run.iteration, w->t->config.iterations, ADCGS_MAX(w->t->run.iteration, 300));
+    adcgs_progress_show(&w->progress, "finish  the state after iteration %u ...", w->t->run.iteration);
     const adcgs_status status = adcgs_trainer_finish(w->t, &w->last, error);
     adcgs_progress_clear(&w->progress);
     ADCGS_TRY(status);
     adcgs_enc_preview_show(&w->preview, w->t, NULL, &w->progress);
-    adcgs_cli_note(cli, "a file of the state after iteration %u of %u", w->t->iteration, w->t->config.iterations);
+    adcgs_cli_note(cli, "a file of the state after iteration %u of %u", w->t->run.iteration, w->t->config.iterations);
     adcgs_enc_log_last(w);
     adcgs_enc_log_settings(w);
     adcgs_enc_log_decisions(w);
@@ -177,21 +177,21 @@ static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_context *w, adcgs_err
 static void remark(const adcgs_cli *cli, const adcgs_enc_context *w)
 {
     const adcgs_trainer *t = w->t;
-    if (t->rollbacks)
+    if (t->run.rollbacks)
         adcgs_cli_note(cli, "training began to diverge; it continued from an earlier state, with half the learning rates%s",
-                       t->rollbacks > 1 ? ", more than once" : "");
+                       t->run.rollbacks > 1 ? ", more than once" : "");
     if (adcgs_trainer_is_lost(t))
         adcgs_cli_note(cli, "the training views are rendered with %.1f dB, where a single colour would have %.1f: check %s",
-                       w->last.psnr, adcgs_psnr_from_mse(t->contrast * t->contrast), "poses, points and settings");
+                       w->last.psnr, adcgs_psnr_from_mse(t->rate.contrast * t->rate.contrast), "poses, points and settings");
 }
 
 /** Trains, in a team if there is one. The processor time is that of all ranks, except for time from a checkpoint. */
 static adcgs_status run(adcgs_enc_context *w, int *stopped, adcgs_error *error)
 {
-    const double before = w->t->elapsed.cpu;
+    const double before = w->t->run.elapsed.cpu;
     w->t->team = adcgs_enc_team_of(&w->team);
     adcgs_status status = adcgs_trainer_run(w->t, observe, w, stopped, error);
-    double cpu = w->t->elapsed.cpu - before;
+    double cpu = w->t->run.elapsed.cpu - before;
     if (status == ADCGS_OK && !*stopped)
         status = adcgs_enc_team_sum(&w->team, &cpu, error);
     if (w->t->team)
@@ -215,10 +215,10 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_context *w, const char
     int stopped;
     if (state)
         ADCGS_TRY(adcgs_trainer_load(w->t, state, error));
-    if (w->o->beginning && w->t->lambda_used)
+    if (w->o->beginning && w->t->rate.lambda_used)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: this run is past its beginning", state);
-    w->t->until_lambda = w->o->beginning != NULL;
-    w->saved = w->t->elapsed.clock;
+    w->t->rate.until_lambda = w->o->beginning != NULL;
+    w->saved = w->t->run.elapsed.clock;
     if (w->o->finish)
         return finish(cli, w, error);
     if (!w->is_live)
@@ -266,7 +266,7 @@ adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, con
         ADCGS_TRY(adcgs_trainer_create_from(&w->t, scene, &job->config, &input, job->cpu, job->pool, error));
     }
     if (tells) {
-        w->t->thumbnails = w->thumbnails = adcgs_alloc(NULL, w->t->n_views, sizeof *w->thumbnails, error);
+        w->t->views.thumbnails = w->thumbnails = adcgs_alloc(NULL, w->t->views.n, sizeof *w->thumbnails, error);
         if (!w->thumbnails)
             return adcgs_alloc_status(error);
     }
@@ -274,14 +274,14 @@ adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, con
     w->begins = scene->whole && job->cuts.n ? job->cuts.at[w->segment] : 0;
     memcpy(w->t->trials, w->trials, sizeof w->trials);
     w->t->quantise = adcgs_encode_quantise_hook;
-    w->t->measure = measure;
-    w->t->measure_user = w;
-    w->t->picture_memory = job->o->memory;
+    w->t->rate.measure = measure;
+    w->t->rate.measure_user = w;
+    w->t->views.memory = job->o->memory;
     if (job->ranks && !job->o->memory) /* the ranks of a host share it */
-        w->t->picture_memory = adcgs_image_store_default_memory() / (uint64_t)ADCGS_MAX(job->ranks->local_size, 1);
-    w->t->loading = loading;
-    w->t->loading_user = w;
-    w->t->started = started;
+        w->t->views.memory = adcgs_image_store_default_memory() / (uint64_t)ADCGS_MAX(job->ranks->local_size, 1);
+    w->t->views.loading = loading;
+    w->t->views.loading_user = w;
+    w->t->run.started = started;
     if (tells)
         ADCGS_TRY(adcgs_enc_report_space(w, error));
     const adcgs_status status = train(job->cli, w, state, error);

@@ -41,7 +41,7 @@ adcgs_status adcgs_enc_cut(adcgs_enc_job *job, double seconds, adcgs_error *erro
 /** The notes of a run that has ended, except lambda. */
 static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_context *w, const adcgs_enc_job *job)
 {
-    adcgs_trainer ended = {.config = job->config, .iteration = job->config.iterations};
+    adcgs_trainer ended = {.config = job->config, .run.iteration = job->config.iterations};
     memcpy(ended.trials, w->trials, sizeof ended.trials);
     adcgs_enc_make_notes(n, &ended, (const char *)w->changes.data);
 }

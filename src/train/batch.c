@@ -101,11 +101,11 @@ static adcgs_status run_passes(adcgs_trainer *t, double progress, uint32_t first
     *n = 0;
     for (uint32_t i = first; i < end; i++) {
         ADCGS_TRY(begin_sum(t, *n, &stats, error));
-        if (t->rounding && i == first)
+        if (t->stage.rounding && i == first)
             ADCGS_TRY(keep_means(t, error));
-        else if (t->rounding)
+        else if (t->stage.rounding)
             put_means_back(t);
-        ADCGS_TRY(adcgs_view_pass(t, progress, t->iteration * t->config.batch + i, &stats, &t->batch.results[i], error));
+        ADCGS_TRY(adcgs_view_pass(t, progress, t->run.iteration * t->config.batch + i, &stats, &t->batch.results[i], error));
         take_gradients(t->f, t->batch.sum[*n]);
         *n = adcgs_tree_add(parts, *n, (adcgs_tree_part){i, 1, t->batch.sum[*n]}, t->batch.size);
     }
@@ -131,8 +131,8 @@ adcgs_status adcgs_batch_run(adcgs_trainer *t, double progress, adcgs_error *err
     const uint32_t n = t->config.batch;
     memset(t->batch.results, 0, n * sizeof *t->batch.results);
     ADCGS_TRY(n > 1 ? look_at_many(t, progress, error)
-                    : adcgs_view_pass(t, progress, t->iteration, &t->stats, t->batch.results, error));
+                    : adcgs_view_pass(t, progress, t->run.iteration, &t->stats, t->batch.results, error));
     for (uint32_t i = 0; i < n; i++)
-        adcgs_view_pass_apply(t, progress, t->iteration * n + i, &t->batch.results[i]);
+        adcgs_view_pass_apply(t, progress, t->run.iteration * n + i, &t->batch.results[i]);
     return ADCGS_OK;
 }

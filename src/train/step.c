@@ -48,7 +48,7 @@ static void adam_piece(void *arg, int i, int thread)
 static float weight_price(const adcgs_trainer *t, double progress)
 {
     const adcgs_train_config *c = &t->config;
-    const int landed = t->frozen && c->target == ADCGS_TARGET_SIZE;
+    const int landed = t->stage.frozen && c->target == ADCGS_TARGET_SIZE;
     return progress >= c->prune_units_at && !c->without_rate && !landed ? c->network_rate * (float)adcgs_cost_of_bit(t) : 0;
 }
 
@@ -97,8 +97,8 @@ static void update(adcgs_trainer *t, double progress)
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
         adcgs_param *p = &t->f->param[i];
         const int entropy = i == ADCGS_P_ETA_PRIOR || i >= ADCGS_P_E_FV;
-        if ((t->frozen && (!is_network(i) || entropy)) || (t->rounding && (i == ADCGS_P_STEP || i == ADCGS_P_E_STEPS)) ||
-            adcgs_fmodel_is_settled(t->f, i)) {
+        if ((t->stage.frozen && (!is_network(i) || entropy)) ||
+            (t->stage.rounding && (i == ADCGS_P_STEP || i == ADCGS_P_E_STEPS)) || adcgs_fmodel_is_settled(t->f, i)) {
             memset(p->g, 0, p->n * sizeof *p->g);
             continue;
         }
@@ -108,13 +108,13 @@ static void update(adcgs_trainer *t, double progress)
             hold_settled(t->f, i);
         if (!begins(p, i))
             continue;
-        const float lr = t->lr_scale * adcgs_train_rate(&t->config, p->lr0, p->lr1, progress), n = (float)++p->steps;
+        const float lr = t->run.lr_scale * adcgs_train_rate(&t->config, p->lr0, p->lr1, progress), n = (float)++p->steps;
         adam_job job = {t, i, lr, 1 / (1 - powf(ADAM_BETA1, n)), 1 / (1 - powf(ADAM_BETA2, n))};
         adcgs_pool_run(p->n > ADAM_PIECE ? t->pool : NULL, adam_piece, &job, (int)((p->n + ADAM_PIECE - 1) / ADAM_PIECE));
     }
-    if (t->rounding && !t->frozen)
+    if (t->stage.rounding && !t->stage.frozen)
         follow_means(t);
-    if (!t->rounding && t->iteration % CHECK_EVERY == 0)
+    if (!t->stage.rounding && t->run.iteration % CHECK_EVERY == 0)
         adcgs_fmodel_widen_steps(t->f);
     else
         adcgs_fmodel_take_steps(t->f);
@@ -126,14 +126,17 @@ static int averages(const adcgs_trainer *t, double progress)
 {
     const adcgs_train_config *c = &t->config;
     const double freeze = t->quantise && !c->without_rounding ? fmin((double)c->freeze_start, 1) : 1;
-    const double begin = t->frozen ? freeze : freeze < 1 ? (double)c->quant_round_start : 0, end = t->frozen ? 1 : freeze;
+    const double begin = t->stage.frozen ? freeze
+                         : freeze < 1    ? (double)c->quant_round_start
+                                         : 0,
+                 end = t->stage.frozen ? 1 : freeze;
     return progress >= end - fmin((double)c->average_share, (end - begin) / 2);
 }
 
 /** Updates running means of the view passes' results, over few iterations at first, over many later. */
 static void note_means(adcgs_trainer *t, int rated)
 {
-    const double keep = !t->iteration ? 0 : t->iteration < EARLY ? KEEP_EARLY : KEEP;
+    const double keep = !t->run.iteration ? 0 : t->run.iteration < EARLY ? KEEP_EARLY : KEEP;
     adcgs_view_result mean = {.loss = 0};
     for (uint32_t i = 0; i < t->config.batch; i++) {
         const adcgs_view_result *seen = &t->batch.results[i];
@@ -142,11 +145,12 @@ static void note_means(adcgs_trainer *t, int rated)
         for (int j = 0; j < ADCGS_GROUPS; j++)
             mean.bits[j] += seen->bits[j] / t->config.batch;
     }
-    t->mean_loss = keep * t->mean_loss + (1 - keep) * mean.loss;
-    t->mean_mse = keep * t->mean_mse + (1 - keep) * mean.mse;
-    t->least_mse = t->iteration ? fmin(t->least_mse, t->mean_mse) : t->mean_mse;
+    t->run.mean_loss = keep * t->run.mean_loss + (1 - keep) * mean.loss;
+    t->run.mean_mse = keep * t->run.mean_mse + (1 - keep) * mean.mse;
+    t->run.least_mse = t->run.iteration ? fmin(t->run.least_mse, t->run.mean_mse) : t->run.mean_mse;
     for (int i = 0; rated && i < ADCGS_GROUPS; i++)
-        t->mean_bits[i] = t->mean_bits[i] > 0 ? BITS_KEEP * t->mean_bits[i] + BITS_NEW * mean.bits[i] : mean.bits[i];
+        t->rate.mean_bits[i] =
+            t->rate.mean_bits[i] > 0 ? BITS_KEEP * t->rate.mean_bits[i] + BITS_NEW * mean.bits[i] : mean.bits[i];
 }
 
 adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *error)
@@ -154,6 +158,6 @@ adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *er
     ADCGS_TRY(adcgs_batch_run(t, progress, error));
     note_means(t, adcgs_view_pass_has_rate(t, progress));
     update(t, progress);
-    t->iteration++;
+    t->run.iteration++;
     return averages(t, progress) ? adcgs_weight_average_add(&t->average, t->f, error) : ADCGS_OK;
 }

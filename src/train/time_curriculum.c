@@ -40,6 +40,13 @@ void adcgs_curriculum_clear(adcgs_curriculum *w)
     w->views = NULL;
 }
 
+void adcgs_curriculum_walk(adcgs_checkpoint_walk *walk, adcgs_curriculum *w)
+{
+    adcgs_checkpoint_visit(walk, &w->n, sizeof w->n);
+    adcgs_checkpoint_visit(walk, &w->first, sizeof w->first);
+    adcgs_checkpoint_visit(walk, &w->last, sizeof w->last);
+}
+
 static void copy_row(adcgs_fmodel *f, int to, int from)
 {
     const size_t width = f->params.time_width, columns = (size_t)adcgs_fmodel_time_columns(&f->params);

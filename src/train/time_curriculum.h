@@ -9,6 +9,7 @@
 #define ADCGS_TRAIN_TIME_CURRICULUM_H
 
 #include "fmodel/fmodel.h"
+#include "train/state/visit.h"
 
 typedef struct adcgs_curriculum_view {
     float t;        /* in [0,1] */
@@ -27,6 +28,8 @@ typedef struct adcgs_curriculum {
 /** t: time of each view, as a fraction of the scene's duration. */
 adcgs_status adcgs_curriculum_create(adcgs_curriculum *window, const float *t, uint32_t n_views, int forward, adcgs_error *error);
 void adcgs_curriculum_clear(adcgs_curriculum *window);
+/** Stores or restores the reach of the window. */
+void adcgs_curriculum_walk(adcgs_checkpoint_walk *walk, adcgs_curriculum *window);
 /** Extends the training to this fraction of the views. New rows of the time table are copied from their neighbours. */
 void adcgs_curriculum_grow(adcgs_curriculum *window, double fraction, adcgs_fmodel *f);
 /** Picks a view of the window for the given view pass; every second time one of the latest quarter. */

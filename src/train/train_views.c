@@ -12,16 +12,16 @@
 static adcgs_status load_pictures(adcgs_trainer *t, int divide, adcgs_error *error)
 {
     adcgs_thumbnail *own = NULL;
-    if (t->config.retime_duplicates && !t->thumbnails && !(own = adcgs_alloc(NULL, t->n_views, sizeof *own, error)))
+    if (t->config.retime_duplicates && !t->views.thumbnails && !(own = adcgs_alloc(NULL, t->views.n, sizeof *own, error)))
         return adcgs_alloc_status(error);
-    adcgs_thumbnail *const thumbnails = own ? own : t->thumbnails;
+    adcgs_thumbnail *const thumbnails = own ? own : t->views.thumbnails;
     const adcgs_image_store_config config = {.split = ADCGS_SPLIT_TRAIN,
                                              .divide = divide,
-                                             .memory = t->picture_memory,
-                                             .progress = t->loading,
-                                             .user = t->loading_user,
+                                             .memory = t->views.memory,
+                                             .progress = t->views.loading,
+                                             .user = t->views.loading_user,
                                              .thumbnails = thumbnails};
-    adcgs_status status = adcgs_image_store_load(&t->pictures, t->scene, &config, t->pool, error);
+    adcgs_status status = adcgs_image_store_load(&t->views.store, t->scene, &config, t->pool, error);
     if (status == ADCGS_OK && t->config.retime_duplicates)
         status = adcgs_retime_duplicates(t, thumbnails, error);
     adcgs_free(NULL, own);
@@ -33,25 +33,25 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
     size_t most = 0;
     adcgs_views_unload(t);
     ADCGS_TRY(load_pictures(t, divide, error));
-    for (uint32_t i = 0; i < t->n_views; i++) {
-        const adcgs_camera *camera = adcgs_image_store_camera(t->pictures, i);
-        const adcgs_status status = adcgs_view_init(&t->views[i].view, camera, t->origin, t->scale, error);
+    for (uint32_t i = 0; i < t->views.n; i++) {
+        const adcgs_camera *camera = adcgs_image_store_camera(t->views.store, i);
+        const adcgs_status status = adcgs_view_init(&t->views.list[i].view, camera, t->origin, t->scale, error);
         ADCGS_TRY(adcgs_camera_path_rendered(camera, status, error));
         most = ADCGS_MAX(most, (size_t)camera->width * (size_t)camera->height);
     }
     t->image = adcgs_alloc(NULL, most * 3, sizeof(float), error);
     t->grad = adcgs_alloc(NULL, most * 3, sizeof(float), error);
     t->taken = adcgs_alloc(NULL, most * 3, sizeof(float), error);
-    t->divide = divide;
+    t->views.divide = divide;
     return t->image && t->grad && t->taken ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, adcgs_exposure_sums *sums, const float **target,
                                   adcgs_error *error)
 {
-    const adcgs_view *v = &t->views[view].view;
+    const adcgs_view *v = &t->views.list[view].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
-    ADCGS_TRY(adcgs_image_store_get(t->pictures, view, t->taken, error));
+    ADCGS_TRY(adcgs_image_store_get(t->views.store, view, t->taken, error));
     if (t->exposure.n && sums)
         adcgs_exposure_sum(&t->exposure, view, t->image, t->taken, plane, sums);
     if (t->exposure.n) {
@@ -59,7 +59,7 @@ adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, adcgs_exposur
         adcgs_exposure_allow_burnt(&t->exposure, view, t->image, t->scene->has_alpha ? t->scene->background : NULL, t->taken,
                                    plane);
     }
-    const uint8_t *const hidden = adcgs_image_store_mask(t->pictures, view);
+    const uint8_t *const hidden = adcgs_image_store_mask(t->views.store, view);
     for (size_t i = 0; hidden && i < plane; i++)
         for (size_t c = 0; hidden[i] && c < 3; c++)
             t->taken[c * plane + i] = t->image[c * plane + i];
@@ -69,9 +69,9 @@ adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, adcgs_exposur
 
 adcgs_status adcgs_trainer_loss(adcgs_trainer *t, uint32_t view, const float *target, adcgs_loss_value *value, adcgs_error *error)
 {
-    const adcgs_view *v = &t->views[view].view;
+    const adcgs_view *v = &t->views.list[view].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
-    const uint8_t *const hidden = adcgs_image_store_mask(t->pictures, view);
+    const uint8_t *const hidden = adcgs_image_store_mask(t->views.store, view);
     const adcgs_loss_shares shares = {t->config.ssim_weight, t->config.l2_share};
     size_t known = plane;
     ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->width, v->height, &shares, t->grad, value, error));
@@ -110,7 +110,7 @@ void adcgs_view_crop(adcgs_view *v, int x, int y, int width, int height)
 adcgs_status adcgs_trainer_loss_crop(adcgs_trainer *t, uint32_t view, const adcgs_view *crop, adcgs_loss_value *value,
                                      adcgs_error *error)
 {
-    const adcgs_view *v = &t->views[view].view;
+    const adcgs_view *v = &t->views.list[view].view;
     const size_t wide = (size_t)v->width, w = (size_t)crop->width, h = (size_t)crop->height;
     const size_t x = (size_t)lrintf(v->cx - crop->cx), y = (size_t)lrintf(v->cy - crop->cy);
     const adcgs_loss_shares shares = {t->config.ssim_weight, t->config.l2_share};
@@ -146,9 +146,9 @@ adcgs_status adcgs_view_backward(adcgs_trainer *t, const adcgs_view *view, uint3
 
 uint32_t adcgs_view_pick(const adcgs_trainer *t, uint32_t look)
 {
-    if (t->curriculum.n < t->n_views)
+    if (t->curriculum.n < t->views.n)
         return adcgs_curriculum_pick(&t->curriculum, t->config.seed, look);
-    const uint32_t n = t->n_views, epoch = look / n;
+    const uint32_t n = t->views.n, epoch = look / n;
     int half = 1;
     while ((uint64_t)1 << (2 * half) < n)
         half++;

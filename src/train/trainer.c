@@ -44,7 +44,7 @@ static int is_finite(const adcgs_trainer *t)
 /** Checksum of the model, to compare the runs of a team. */
 static uint32_t sum_up(const adcgs_trainer *t)
 {
-    uint32_t crc = adcgs_crc32c(t->iteration, &t->f->n, sizeof t->f->n);
+    uint32_t crc = adcgs_crc32c(t->run.iteration, &t->f->n, sizeof t->f->n);
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         crc = adcgs_crc32c(crc, t->f->param[i].p, t->f->param[i].n * sizeof(float));
     return crc;
@@ -60,26 +60,26 @@ static adcgs_status agree(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(adcgs_team_gather_each(t->team, sums, sizeof *sums, error));
     for (int r = 1; r < t->team->size; r++)
         if (sums[r] != sums[0]) {
-            t->torn = 1; /* it is unknown whose state is right */
+            t->run.torn = 1; /* it is unknown whose state is right */
             return adcgs_fail(error, ADCGS_ERR_DATA,
                               "at iteration %u run %d of the %d that train together has a different model "
                               "from the first: expected the same programs, libraries, images and checkpoints",
-                              t->iteration, r + 1, t->team->size);
+                              t->run.iteration, r + 1, t->team->size);
         }
     return ADCGS_OK;
 }
 
 static adcgs_status take_snapshot(adcgs_trainer *t, adcgs_error *error)
 {
-    t->snapshot.size = 0;
-    t->snapshot_at = t->iteration;
-    return adcgs_trainer_store(t, &t->snapshot, error);
+    t->run.snapshot.size = 0;
+    t->run.snapshot_at = t->run.iteration;
+    return adcgs_trainer_store(t, &t->run.snapshot, error);
 }
 
 int adcgs_trainer_is_lost(const adcgs_trainer *t)
 {
-    const double off = LOST_BY * fmax(t->contrast, LOST_LEAST);
-    return t->mean_mse > off * off;
+    const double off = LOST_BY * fmax(t->rate.contrast, LOST_LEAST);
+    return t->run.mean_mse > off * off;
 }
 
 /**
@@ -88,7 +88,7 @@ int adcgs_trainer_is_lost(const adcgs_trainer *t)
  */
 static int is_blown(const adcgs_trainer *t)
 {
-    return t->iteration >= MEANS_AFTER && t->mean_mse > BLOWN_BY * t->least_mse && adcgs_trainer_is_lost(t);
+    return t->run.iteration >= MEANS_AFTER && t->run.mean_mse > BLOWN_BY * t->run.least_mse && adcgs_trainer_is_lost(t);
 }
 
 /** After NaN, infinity or a sharp rise of the loss: restores the last good state and halves the steps. */
@@ -96,66 +96,66 @@ static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
 {
     const double progress = adcgs_trainer_progress(t);
     /* Also before values derived from the parameters are fixed: at the end, and at a change of stage. */
-    const int due = t->iteration % CHECK_EVERY == 0 || progress >= 1 ||
+    const int due = t->run.iteration % CHECK_EVERY == 0 || progress >= 1 ||
                     adcgs_train_stage(&t->config, progress) != adcgs_train_stage(&t->config, before);
-    if (isfinite(t->mean_loss) && t->mean_loss <= LOSS_MOST && !is_blown(t) && (!due || is_finite(t)))
-        return t->iteration % SNAPSHOT_EVERY == 0 ? take_snapshot(t, error) : ADCGS_OK;
-    t->torn = 1;
-    const uint32_t rollbacks = t->rollbacks + 1;
-    const float lr = t->lr_scale * 0.5f;
-    t->diverged = rollbacks > ROLLBACKS_MAX;
-    if (t->diverged)
+    if (isfinite(t->run.mean_loss) && t->run.mean_loss <= LOSS_MOST && !is_blown(t) && (!due || is_finite(t)))
+        return t->run.iteration % SNAPSHOT_EVERY == 0 ? take_snapshot(t, error) : ADCGS_OK;
+    t->run.torn = 1;
+    const uint32_t rollbacks = t->run.rollbacks + 1;
+    const float lr = t->run.lr_scale * 0.5f;
+    t->run.diverged = rollbacks > ROLLBACKS_MAX;
+    if (t->run.diverged)
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "training diverged at iteration %u (loss %g) after %u rollbacks: check poses, exposure and settings",
-                          t->iteration, t->mean_loss, t->rollbacks);
-    ADCGS_TRY(adcgs_trainer_restore(t, t->snapshot.data, t->snapshot.size, error));
-    if (!t->iteration)
-        t->divide = 0; /* contrast and black levels are measured again */
-    t->rollbacks = rollbacks;
-    t->lr_scale = lr;
+                          t->run.iteration, t->run.mean_loss, t->run.rollbacks);
+    ADCGS_TRY(adcgs_trainer_restore(t, t->run.snapshot.data, t->run.snapshot.size, error));
+    if (!t->run.iteration)
+        t->views.divide = 0; /* contrast and black levels are measured again */
+    t->run.rollbacks = rollbacks;
+    t->run.lr_scale = lr;
     return ADCGS_OK;
 }
 
 static void fill_report(const adcgs_trainer *t, double progress, double rate, adcgs_train_report *r)
 {
     r->stage = adcgs_train_stage(&t->config, progress);
-    r->iteration = t->iteration;
+    r->iteration = t->run.iteration;
     r->iterations = t->config.iterations;
     r->anchors = t->f->n;
-    r->divide = t->divide ? t->divide : adcgs_stages_divide(t, progress);
-    r->loss = t->mean_loss;
-    r->psnr = adcgs_psnr_from_mse(t->mean_mse);
+    r->divide = t->views.divide ? t->views.divide : adcgs_stages_divide(t, progress);
+    r->loss = t->run.mean_loss;
+    r->psnr = adcgs_psnr_from_mse(t->run.mean_mse);
     r->bytes = 0;
     for (int i = 0; i < ADCGS_GROUPS; i++)
-        r->bytes += r->stream[i] = t->mean_bits[i] / 8;
-    r->lambda = t->lambda;
-    r->spent = t->elapsed;
+        r->bytes += r->stream[i] = t->rate.mean_bits[i] / 8;
+    r->lambda = t->rate.lambda;
+    r->spent = t->run.elapsed;
     r->rate = rate;
-    r->left = adcgs_time_left_of(&t->left, &t->config, t->iteration, t->elapsed.clock);
-    r->rollbacks = (int)t->rollbacks;
-    r->attempt = t->begin.size && adcgs_rate_is_sought(t) ? (int)t->rate_control.tries + 1 : 0;
+    r->left = adcgs_time_left_of(&t->run.left, &t->config, t->run.iteration, t->run.elapsed.clock);
+    r->rollbacks = (int)t->run.rollbacks;
+    r->attempt = t->rate.begin.size && adcgs_rate_is_sought(t) ? (int)t->rate.control.tries + 1 : 0;
 }
 
 /** Start of this program, moved back by the time that the run has already taken. */
 static adcgs_time begin_of(const adcgs_trainer *t)
 {
-    return adcgs_time_less(fabs(t->started.clock) > 0 ? t->started : adcgs_time_now(), t->elapsed);
+    return adcgs_time_less(fabs(t->run.started.clock) > 0 ? t->run.started : adcgs_time_now(), t->run.elapsed);
 }
 
 adcgs_status adcgs_trainer_finish(adcgs_trainer *t, adcgs_train_report *report, adcgs_error *error)
 {
     const adcgs_time begin = begin_of(t);
-    if (!t->iteration)
+    if (!t->run.iteration)
         return adcgs_fail(error, ADCGS_ERR_DATA, "no file to write: the run is before its first iteration");
     if (!is_finite(t))
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "no file to write: training has diverged at iteration %u; continue the run, "
                           "which then rolls back",
-                          t->iteration);
+                          t->run.iteration);
     adcgs_trainer_prepare_networks(t);
     ADCGS_TRY(adcgs_stages_skip(t, error));
     ADCGS_TRY(adcgs_stages_finish(t, error));
-    t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
+    t->run.elapsed = adcgs_time_less(adcgs_time_now(), begin);
     fill_report(t, 1, 0, report);
     return ADCGS_OK;
 }
@@ -169,8 +169,8 @@ int adcgs_trainer_moves(const adcgs_trainer *t)
 /** Updates the elapsed time. With a time limit all runs of a team use the time of rank 0, so that progress is the same. */
 static adcgs_status take_time(adcgs_trainer *t, adcgs_time begin, adcgs_error *error)
 {
-    t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
-    return t->config.time_limit > 0 ? adcgs_team_broadcast(t->team, &t->elapsed, sizeof t->elapsed, error) : ADCGS_OK;
+    t->run.elapsed = adcgs_time_less(adcgs_time_now(), begin);
+    return t->config.time_limit > 0 ? adcgs_team_broadcast(t->team, &t->run.elapsed, sizeof t->run.elapsed, error) : ADCGS_OK;
 }
 
 typedef struct reports {
@@ -184,10 +184,11 @@ typedef struct reports {
 static adcgs_status tell(const adcgs_trainer *t, reports *r, double progress, int *stops, adcgs_error *error)
 {
     const double at = adcgs_seconds();
-    const double lately = at > r->last && t->iteration > r->iteration ? (t->iteration - r->iteration) / (at - r->last) : r->rate;
+    const double lately =
+        at > r->last && t->run.iteration > r->iteration ? (t->run.iteration - r->iteration) / (at - r->last) : r->rate;
     adcgs_train_report report;
     r->rate = r->rate > 0 ? 0.9 * r->rate + 0.1 * lately : lately;
-    r->iteration = t->iteration;
+    r->iteration = t->run.iteration;
     r->last = at;
     fill_report(t, progress, r->rate, &report);
     *stops = r->observe && r->observe(r->user, &report);
@@ -198,28 +199,28 @@ static adcgs_status tell(const adcgs_trainer *t, reports *r, double progress, in
 static adcgs_status end(adcgs_trainer *t, adcgs_error *error)
 {
     ADCGS_TRY(take_snapshot(t, error));
-    t->torn = 1;
+    t->run.torn = 1;
     return adcgs_stages_finish(t, error);
 }
 
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
 {
     const adcgs_time begin = begin_of(t);
-    reports r = {observe, user, adcgs_seconds(), 0, t->iteration};
+    reports r = {observe, user, adcgs_seconds(), 0, t->run.iteration};
     *stopped = 0;
     adcgs_trainer_prepare_networks(t);
     ADCGS_TRY(take_snapshot(t, error));
     ADCGS_TRY(agree(t, error));
     for (;;) {
-        t->torn = 0;
+        t->run.torn = 0;
         ADCGS_TRY(take_time(t, begin, error));
         const double progress = adcgs_trainer_progress(t);
-        if (progress >= 1 && !t->iteration)
+        if (progress >= 1 && !t->run.iteration)
             return adcgs_fail(error, ADCGS_ERR_USAGE,
                               "the time limit of %g s ended after %.1f s, before training began: "
                               "it includes reading the scene",
-                              t->config.time_limit, t->elapsed.clock);
-        if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
+                              t->config.time_limit, t->run.elapsed.clock);
+        if (t->run.iteration % REPORT_EVERY == 0 || progress >= 1) {
             int stops;
             ADCGS_TRY(tell(t, &r, progress, &stops, error));
             if (stops && progress < 1) {
@@ -229,13 +230,13 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         }
         if (progress >= 1)
             return end(t, error);
-        if (t->until_lambda && progress >= adcgs_train_lambda_from(&t->config)) {
+        if (t->rate.until_lambda && progress >= adcgs_train_lambda_from(&t->config)) {
             *stopped = 1;
             return ADCGS_OK;
         }
         ADCGS_TRY(adcgs_stages_before(t, progress, error));
-        if (t->next_lambda > 0) { /* another try from an earlier state, which is then the last good one */
-            t->torn = 1;
+        if (t->rate.next_lambda > 0) { /* another try from an earlier state, which is then the last good one */
+            t->run.torn = 1;
             ADCGS_TRY(adcgs_rate_search_return(t, error));
             ADCGS_TRY(take_time(t, begin, error));
             ADCGS_TRY(take_snapshot(t, error));
@@ -245,9 +246,10 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         if (adcgs_trainer_progress(t) >= 1) /* loading images or changing anchors used up the time */
             continue;
         ADCGS_TRY(adcgs_train_step(t, progress, error));
-        adcgs_time_left_add(&t->left, t->divide / t->config.scale, adcgs_seconds() - begin.clock - t->elapsed.clock);
+        adcgs_time_left_add(&t->run.left, t->views.divide / t->config.scale,
+                            adcgs_seconds() - begin.clock - t->run.elapsed.clock);
         ADCGS_TRY(take_time(t, begin, error));
-        if (t->iteration % AGREE_EVERY == 0 || adcgs_trainer_progress(t) >= 1)
+        if (t->run.iteration % AGREE_EVERY == 0 || adcgs_trainer_progress(t) >= 1)
             ADCGS_TRY(agree(t, error));
         ADCGS_TRY(guard(t, progress, error));
     }

@@ -14,7 +14,7 @@ enum { PICTURES_AHEAD = 8 };
 
 int adcgs_view_pass_has_rate(const adcgs_trainer *t, double progress)
 {
-    return adcgs_stage_has_begun(&t->config, ADCGS_STAGE_RATE, progress) && !t->frozen;
+    return adcgs_stage_has_begun(&t->config, ADCGS_STAGE_RATE, progress) && !t->stage.frozen;
 }
 
 static int follows_exposure(const adcgs_trainer *t, double progress)
@@ -25,8 +25,8 @@ static int follows_exposure(const adcgs_trainer *t, double progress)
 static adcgs_pass_mode mode_of(const adcgs_trainer *t, double progress, uint32_t number)
 {
     const adcgs_train_config *c = &t->config;
-    const adcgs_quant quant = t->frozen                                               ? ADCGS_QUANT_NONE
-                              : t->rounding                                           ? ADCGS_QUANT_ROUND
+    const adcgs_quant quant = t->stage.frozen                                         ? ADCGS_QUANT_NONE
+                              : t->stage.rounding                                     ? ADCGS_QUANT_ROUND
                               : adcgs_stage_has_begun(c, ADCGS_STAGE_NOISE, progress) ? ADCGS_QUANT_NOISE
                                                                                       : ADCGS_QUANT_NONE;
     const int moves = adcgs_stage_has_begun(c, ADCGS_STAGE_COARSE, progress) || t->stereo.n_bodies;
@@ -59,7 +59,7 @@ static void add_stats(const adcgs_trainer *t, const adcgs_view *v, const adcgs_r
     const size_t slots = t->pass->primitives.n;
     const float *weight = t->pass->grads.weight, *screen = grads->screen, *opacity = t->pass->primitives.opacity;
     /* Psi is counted in pixels of the full resolution. */
-    const float area = (float)(t->divide * t->divide);
+    const float area = (float)(t->views.divide * t->views.divide);
     for (size_t i = 0; i < slots; i++) {
         stats->weight[i] += area * weight[i];
         stats->opacity[i] += opacity[i];
@@ -79,13 +79,13 @@ static adcgs_status look_at_picture(adcgs_trainer *t, double progress, uint32_t 
                                     adcgs_view_result *result, adcgs_error *error)
 {
     const uint32_t picked = adcgs_view_pick(t, number), n = t->config.batch;
-    const adcgs_view *v = &t->views[picked].view;
+    const adcgs_view *v = &t->views.list[picked].view;
     adcgs_raster_grads all = *grads;
     adcgs_loss_value value;
     const float *target;
     ADCGS_TRY(adcgs_view_render(t, v, picked, t->image, 1, error));
     ADCGS_TRY(adcgs_trainer_target(t, picked, follows_exposure(t, progress) ? &result->sums : NULL, &target, error));
-    adcgs_image_store_prefetch(t->pictures, adcgs_view_pick(t, number + (PICTURES_AHEAD + n - 1) / n * n));
+    adcgs_image_store_prefetch(t->views.store, adcgs_view_pick(t, number + (PICTURES_AHEAD + n - 1) / n * n));
     ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
     result->loss = value.loss;
     result->mse = value.mse;
@@ -110,11 +110,11 @@ adcgs_status adcgs_view_pass(adcgs_trainer *t, double progress, uint32_t number,
 {
     const adcgs_train_config *c = &t->config;
     const uint32_t picked = adcgs_view_pick(t, number);
-    const adcgs_train_view *v = &t->views[picked];
+    const adcgs_train_view *v = &t->views.list[picked];
     const adcgs_pass_mode mode = mode_of(t, progress, number);
     const int rated = adcgs_view_pass_has_rate(t, progress);
     /* A rounding pass updates the means of the groups that it measures, so all passes of an iteration use the same groups. */
-    const uint32_t turn = mode.quant == ADCGS_QUANT_ROUND ? t->iteration : number;
+    const uint32_t turn = mode.quant == ADCGS_QUANT_ROUND ? t->run.iteration : number;
     adcgs_raster_grads grads = t->pass->grads;
     if (progress >= adcgs_stage_end(c, ADCGS_STAGE_DENSIFY)) /* only growth needs it */
         grads.screen = NULL;

@@ -31,10 +31,10 @@ static void iterate(training *r, uint32_t n)
 {
     adcgs_error error = {.status = ADCGS_OK};
     int stopped;
-    r->until = r->t->iteration + n;
+    r->until = r->t->run.iteration + n;
     bench_check(adcgs_trainer_run(r->t, reached, r, &stopped, &error), &error);
-    if (r->t->iteration != r->until) {
-        fprintf(stderr, "adcgs-bench: %u iterations asked for, %u more were made\n", n, r->t->iteration - r->until);
+    if (r->t->run.iteration != r->until) {
+        fprintf(stderr, "adcgs-bench: %u iterations asked for, %u more were made\n", n, r->t->run.iteration - r->until);
         exit(1);
     }
 }

@@ -163,8 +163,8 @@ grep -q node7 "$out/lambda-1.running" || fail "another's is gone"
 # Invalid combinations of options, and folders that are not those of a sweep.
 many 2 '--run lambda-3: expected one of the runs' "$dir/scene" -o "$out" -l 1 --run lambda-3
 many 2 'exclude each other' "$dir/scene" -o "$out" -l 1 --run lambda-1 --list
-many 2 '--jobs has no effect with --list' "$dir/scene" -o "$out" -l 1 -j 2 --list
-many 2 '--jobs has no effect with --run' "$dir/scene" -o "$out" -l 1 -j 1 --run lambda-1
+many 2 '--jobs excludes --list and --run' "$dir/scene" -o "$out" -l 1 -j 2 --list
+many 2 '--jobs excludes --list and --run' "$dir/scene" -o "$out" -l 1 -j 1 --run lambda-1
 mkdir "$dir/line
 break"
 many 2 'without line breaks' "$dir/line

@@ -133,7 +133,7 @@ static void go_on(adcgs_trainer *t)
     adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream;
     int stopped = 1;
-    uint32_t stop = t->iteration < ITERATIONS - GOES_ON ? t->iteration + GOES_ON : ITERATIONS;
+    uint32_t stop = t->run.iteration < ITERATIONS - GOES_ON ? t->run.iteration + GOES_ON : ITERATIONS;
     adcgs_status status = adcgs_trainer_run(t, stop_at, &stop, &stopped, &error);
     check(status, &error);
     if (status != ADCGS_OK || stopped)

@@ -83,7 +83,7 @@ static inline int run_trainer(adcgs_trainer *t, adcgs_train_observe observe, voi
 /** The state of a run without its time. */
 static inline void store(adcgs_trainer *t, adcgs_buffer *out)
 {
-    t->elapsed = (adcgs_time){0, 0};
+    t->run.elapsed = (adcgs_time){0, 0};
     adcgs_buffer_init(out);
     assert_int_equal(adcgs_trainer_store(t, out, &error), ADCGS_OK);
 }

@@ -22,7 +22,7 @@ static inline adcgs_train_config all_stages_config(void)
 static inline void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
 {
     const int stopped = run_trainer(t, observe, user);
-    assert_int_equal(stopped, t->iteration < t->config.iterations && !(t->config.time_limit > 0));
+    assert_int_equal(stopped, t->run.iteration < t->config.iterations && !(t->config.time_limit > 0));
 }
 
 static inline void assert_same(const adcgs_buffer *a, const adcgs_buffer *b)

@@ -126,7 +126,7 @@ expect 2 "begins with https://" share "$stream" -o "$dir/kept.html" --image 'jav
 expect 2 "loop" share "$stream" -o "$dir/kept.html" --loop maybe
 expect 2 "needs a scene" share -o "$dir/kept.html" --camera 0
 expect 2 "needs a scene" share -o "$dir/kept.html" --sound "$dir/a.opus"
-expect 2 "needs a sound" share "$stream" -o "$dir/kept.html" --sound-offset 1
+expect 2 "sound-offset needs --sound" share "$stream" -o "$dir/kept.html" --sound-offset 1
 expect 3 "none.opus" share "$stream" -o "$dir/kept.html" --sound "$dir/none.opus"
 expect 4 "no sound, expected Ogg" share "$stream" -o "$dir/kept.html" --sound "$stream"
 : >"$dir/empty.opus"

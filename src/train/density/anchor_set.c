@@ -83,7 +83,7 @@ int adcgs_anchor_is_idle(const adcgs_trainer *t, uint32_t anchor, double min_pix
         return 0;
     if (opacity < t->config.prune_opacity * n)
         return 1;
-    return in_view > PRESENCE_LEAST ? weight < min_pixels * (double)in_view : t->stats.n >= t->n_views;
+    return in_view > PRESENCE_LEAST ? weight < min_pixels * (double)in_view : t->stats.n >= t->views.n;
 }
 
 static int by_score(const void *a, const void *b)

@@ -36,7 +36,7 @@ adcgs_status adcgs_freeze(adcgs_trainer *t, adcgs_error *error)
         for (int i = 0; i < ADCGS_P_ANCHOR; i++)
             memset(curvature[i], 0, t->f->param[i].n * sizeof *curvature[i]);
     hold_settled(t->f, curvature);
-    t->frozen = 1;
+    t->stage.frozen = 1;
     if (t->config.rdo_strength > 0) {
         ADCGS_TRY(adcgs_level_choose(t, (double)t->config.rdo_strength, error));
         adcgs_level_densities(t);

@@ -67,7 +67,7 @@ static void spread(look *l)
 
 static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error *error)
 {
-    const adcgs_train_view *v = &t->views[index];
+    const adcgs_train_view *v = &t->views.list[index];
     const int w = l->w = v->view.width, h = l->h = v->view.height;
     const size_t plane = (size_t)w * (size_t)h;
     l->view = v;
@@ -231,7 +231,7 @@ static int is_taken(uint32_t index, uint32_t views, uint32_t turn)
 adcgs_status adcgs_residual_find(adcgs_trainer *t, adcgs_residual *places, uint32_t most, uint32_t *n, adcgs_error *error)
 {
     look looks[VIEWS_MOST] = {{NULL, 0, 0, NULL, NULL, NULL}};
-    const float when = t->views[t->curriculum.views[t->iteration % t->curriculum.n].index].t;
+    const float when = t->views.list[t->curriculum.views[t->run.iteration % t->curriculum.n].index].t;
     int count = 0;
     adcgs_status status = ADCGS_OK;
     rays *r = adcgs_alloc(NULL, 1, sizeof *r, error);
@@ -240,10 +240,10 @@ adcgs_status adcgs_residual_find(adcgs_trainer *t, adcgs_residual *places, uint3
         return adcgs_alloc_status(error);
     adcgs_pass_forward(t->pass, t->f, when, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_COARSE});
     uint32_t there = 0, seen = 0;
-    for (uint32_t i = 0; i < t->n_views; i++)
-        there += t->views[i].t == when;
-    for (uint32_t i = 0; i < t->n_views && status == ADCGS_OK; i++)
-        if (t->views[i].t == when && is_taken(seen++, there, t->iteration))
+    for (uint32_t i = 0; i < t->views.n; i++)
+        there += t->views.list[i].t == when;
+    for (uint32_t i = 0; i < t->views.n && status == ADCGS_OK; i++)
+        if (t->views.list[i].t == when && is_taken(seen++, there, t->run.iteration))
             status = draw(t, &looks[count++], i, error);
     for (int i = 0; status == ADCGS_OK && count >= VIEWS_LEAST && i < count; i++)
         status = follow(looks, count, i, r, places + *n, ADCGS_MIN(most - *n, most / (uint32_t)count), n, error);

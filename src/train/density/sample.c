@@ -18,10 +18,10 @@ enum { NETWORK_VIEWS = 16 };
 /** Loss of a view whose primitives are in the pass, or of one of its quarters if quarter is 0 to 3. */
 static adcgs_status view_loss(adcgs_trainer *t, uint32_t picked, int quarter, double *loss, adcgs_error *error)
 {
-    adcgs_view v = t->views[picked].view;
+    adcgs_view v = t->views.list[picked].view;
     adcgs_loss_value value;
     const float *target;
-    const int whole = quarter < 0 || adcgs_image_store_mask(t->pictures, picked);
+    const int whole = quarter < 0 || adcgs_image_store_mask(t->views.store, picked);
     if (!whole)
         adcgs_view_crop(&v, quarter & 1 ? v.width / 2 : 0, quarter & 2 ? v.height / 2 : 0, (v.width + 1) / 2, (v.height + 1) / 2);
     ADCGS_TRY(adcgs_view_render(t, &v, picked, t->image, 0, error));
@@ -36,12 +36,12 @@ static adcgs_status view_loss(adcgs_trainer *t, uint32_t picked, int quarter, do
 
 static adcgs_status sample_loss(adcgs_trainer *t, uint32_t most, int own_time, int quarters, double *loss, adcgs_error *error)
 {
-    const uint32_t n = ADCGS_MIN(t->n_views, most);
+    const uint32_t n = ADCGS_MIN(t->views.n, most);
     *loss = 0;
     for (uint32_t i = 0; i < n; i++) {
-        const uint32_t picked = (uint32_t)((uint64_t)i * t->n_views / n);
+        const uint32_t picked = (uint32_t)((uint64_t)i * t->views.n / n);
         double one;
-        adcgs_pass_forward(t->pass, t->f, own_time ? t->views[picked].t : 0.5f,
+        adcgs_pass_forward(t->pass, t->f, own_time ? t->views.list[picked].t : 0.5f,
                            &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL, .other_time = i > 0});
         ADCGS_TRY(view_loss(t, picked, quarters ? (int)(i % 4) : -1, &one, error));
         *loss += one / n;
@@ -63,7 +63,7 @@ adcgs_status adcgs_sample_distortion(adcgs_trainer *t, int group, double *bits, 
         return ADCGS_OK;
     }
     double loss;
-    ADCGS_TRY(sample_loss(t, NETWORK_VIEWS, 1, t->divide == t->config.scale, &loss, error));
+    ADCGS_TRY(sample_loss(t, NETWORK_VIEWS, 1, t->views.divide == t->config.scale, &loss, error));
     /* Without a price of bits only the loss decides, since no number of bits comes close to it. */
     *bits = loss / fmax(adcgs_cost_of_bit(t), 1e-30);
     return ADCGS_OK;
@@ -83,8 +83,8 @@ static adcgs_status picture_psnr(adcgs_trainer *t, const adcgs_view *view, const
 
 static adcgs_status loaded_psnr(adcgs_trainer *t, uint32_t index, double *psnr, adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_image_store_get(t->pictures, index, t->taken, error));
-    return picture_psnr(t, &t->views[index].view, t->taken, t->image, psnr, error);
+    ADCGS_TRY(adcgs_image_store_get(t->views.store, index, t->taken, error));
+    return picture_psnr(t, &t->views.list[index].view, t->taken, t->image, psnr, error);
 }
 
 /** The same for a view that is not loaded at full size. */
@@ -105,18 +105,18 @@ static adcgs_status full_psnr(adcgs_trainer *t, uint32_t index, double *psnr, ad
 
 adcgs_status adcgs_sample_psnr(adcgs_trainer *t, uint32_t most, double *psnr, adcgs_error *error)
 {
-    const uint32_t n = ADCGS_MIN(t->n_views, most);
-    const adcgs_pass_mode mode = {.quant = t->frozen     ? ADCGS_QUANT_NONE
-                                           : t->rounding ? ADCGS_QUANT_ROUND
-                                                         : ADCGS_QUANT_NOISE,
+    const uint32_t n = ADCGS_MIN(t->views.n, most);
+    const adcgs_pass_mode mode = {.quant = t->stage.frozen     ? ADCGS_QUANT_NONE
+                                           : t->stage.rounding ? ADCGS_QUANT_ROUND
+                                                               : ADCGS_QUANT_NOISE,
                                   .deform = 1,
                                   .seed = (uint32_t)adcgs_random64(t->config.seed, 3001, 0)};
     *psnr = 0;
     for (uint32_t i = 0; i < n; i++) {
-        const uint32_t index = (uint32_t)((uint64_t)i * t->n_views / n);
+        const uint32_t index = (uint32_t)((uint64_t)i * t->views.n / n);
         double one;
-        adcgs_pass_forward(t->pass, t->f, t->views[index].t, &mode);
-        ADCGS_TRY(t->divide == 1 ? loaded_psnr(t, index, &one, error) : full_psnr(t, index, &one, error));
+        adcgs_pass_forward(t->pass, t->f, t->views.list[index].t, &mode);
+        ADCGS_TRY(t->views.divide == 1 ? loaded_psnr(t, index, &one, error) : full_psnr(t, index, &one, error));
         *psnr += one / n;
     }
     return ADCGS_OK;

@@ -37,7 +37,7 @@ static batch batch_of(const adcgs_stereo *s, float when)
 /** Adds a view's gain for each point: error of the render minus error of the point's colour. */
 static adcgs_status ask_view(adcgs_trainer *t, batch *b, uint32_t index, adcgs_error *error)
 {
-    const adcgs_view *v = &t->views[index].view;
+    const adcgs_view *v = &t->views.list[index].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
     const float *taken;
     ADCGS_TRY(adcgs_view_render(t, v, index, t->image, 0, error));
@@ -61,8 +61,8 @@ static adcgs_status measure_frame(adcgs_trainer *t, batch *b, float when, adcgs_
 {
     uint32_t asked = 0;
     adcgs_pass_forward(t->pass, t->f, when, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
-    for (uint32_t i = 0; i < t->n_views && asked < VIEWS_MOST; i++)
-        if (fabsf(t->views[i].t - when) < 1e-5f) {
+    for (uint32_t i = 0; i < t->views.n && asked < VIEWS_MOST; i++)
+        if (fabsf(t->views.list[i].t - when) < 1e-5f) {
             ADCGS_TRY(ask_view(t, b, i, error));
             asked++;
         }
@@ -90,7 +90,7 @@ adcgs_status adcgs_temporal_densify_find(adcgs_trainer *t, const adcgs_stereo_po
     const adcgs_stereo *s = &t->stereo;
     *n = 0;
     for (int turn = 0; turn < FRAMES && s->n_frames; turn++) {
-        const float when = s->frame_time[adcgs_random64(t->config.seed, 4000 + (uint64_t)turn, t->iteration) % s->n_frames];
+        const float when = s->frame_time[adcgs_random64(t->config.seed, 4000 + (uint64_t)turn, t->run.iteration) % s->n_frames];
         batch b = batch_of(s, when);
         b.gain = adcgs_alloc(NULL, b.n + 1, sizeof *b.gain, error);
         b.seen = adcgs_alloc(NULL, b.n + 1, sizeof *b.seen, error);

@@ -55,7 +55,7 @@ static adcgs_status frame_errors_init(frame_errors *m, const adcgs_fmodel *f, ad
 /** Adds a view's residual, distributed over the anchors that contribute. */
 static adcgs_status add_view(adcgs_trainer *t, frame_errors *m, uint32_t index, adcgs_error *error)
 {
-    const adcgs_train_view *v = &t->views[index];
+    const adcgs_train_view *v = &t->views.list[index];
     const size_t values = 3 * (size_t)v->view.width * (size_t)v->view.height;
     const adcgs_raster_grads *g = &t->pass->grads;
     const float *taken;
@@ -80,12 +80,12 @@ static adcgs_status add_view(adcgs_trainer *t, frame_errors *m, uint32_t index, 
 /** Adds a frame, with some of its views. */
 static adcgs_status add_frame(adcgs_trainer *t, frame_errors *m, uint32_t index, adcgs_error *error)
 {
-    const float at = t->views[index].t;
+    const float at = t->views.list[index].t;
     uint32_t asked = 0;
     adcgs_pass_forward(t->pass, t->f, at, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
-    for (uint32_t i = 0; i < t->n_views && asked < CAMERAS; i++)
-        if (fabsf(t->views[(index + i) % t->n_views].t - at) < 1e-5f) {
-            ADCGS_TRY(add_view(t, m, (index + i) % t->n_views, error));
+    for (uint32_t i = 0; i < t->views.n && asked < CAMERAS; i++)
+        if (fabsf(t->views.list[(index + i) % t->views.n].t - at) < 1e-5f) {
+            ADCGS_TRY(add_view(t, m, (index + i) % t->views.n, error));
             asked++;
         }
     m->views[m->n++] = (float)asked;
@@ -148,7 +148,7 @@ static verdict judge(const frame_errors *m, uint32_t anchor, int moves)
 /** True if the residual is visible and worth the bits of a new anchor. */
 static int is_worth(const adcgs_trainer *t, float missing, float pixels)
 {
-    const double area = (double)t->views[0].view.width * t->views[0].view.height;
+    const double area = (double)t->views.list[0].view.width * t->views.list[0].view.height;
     const double gain = WORTH * (double)missing * (double)missing * (double)pixels / area;
     return missing > VISIBLE && gain > ANCHOR_BITS * adcgs_cost_of_bit(t);
 }
@@ -169,20 +169,20 @@ static void choose(adcgs_trainer *t, const frame_errors *m, int moving, int *idl
 static uint32_t earliest(const adcgs_trainer *t)
 {
     uint32_t first = 0;
-    for (uint32_t i = 1; i < t->n_views; i++)
-        first = t->views[i].t < t->views[first].t ? i : first;
+    for (uint32_t i = 1; i < t->views.n; i++)
+        first = t->views.list[i].t < t->views.list[first].t ? i : first;
     return first;
 }
 
 static adcgs_status release(adcgs_trainer *t, int moving, int *idle, adcgs_error *error)
 {
-    const uint32_t n = t->n_views < FRAMES_MAX ? t->n_views : FRAMES_MAX;
+    const uint32_t n = t->views.n < FRAMES_MAX ? t->views.n : FRAMES_MAX;
     frame_errors m;
     ADCGS_TRY(frame_errors_init(&m, t->f, error));
     t->pass->pull = NULL;
     adcgs_status status = add_frame(t, &m, earliest(t), error);
     for (uint32_t i = 1; status == ADCGS_OK && i < n; i++)
-        status = add_frame(t, &m, (uint32_t)(((uint64_t)2 * i + 1) * t->n_views / (2 * n)), error);
+        status = add_frame(t, &m, (uint32_t)(((uint64_t)2 * i + 1) * t->views.n / (2 * n)), error);
     if (status == ADCGS_OK)
         choose(t, &m, moving, idle);
     frame_errors_clear(&m);
@@ -199,11 +199,11 @@ static double test_progress(const adcgs_train_config *c, int time)
 adcgs_status adcgs_unfreeze_step(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     int idle = 0;
-    if (!t->f->follows || t->unfreeze_tests >= TIMES || progress < test_progress(&t->config, t->unfreeze_tests))
+    if (!t->f->follows || t->stage.unfreeze_tests >= TIMES || progress < test_progress(&t->config, t->stage.unfreeze_tests))
         return ADCGS_OK;
-    ADCGS_TRY(release(t, t->unfreeze_tests > 0, &idle, error));
-    if (idle && t->unfreeze_tests == 0) /* nothing to train: the run is finished */
-        t->iteration = t->config.iterations;
-    t->unfreeze_tests++;
+    ADCGS_TRY(release(t, t->stage.unfreeze_tests > 0, &idle, error));
+    if (idle && t->stage.unfreeze_tests == 0) /* nothing to train: the run is finished */
+        t->run.iteration = t->config.iterations;
+    t->stage.unfreeze_tests++;
     return ADCGS_OK;
 }

@@ -22,11 +22,11 @@ typedef struct histogram {
 
 static adcgs_status gather(histogram (*of)[3], adcgs_trainer *t, adcgs_error *error)
 {
-    for (uint32_t i = 0; i < t->n_views; i++) {
-        const adcgs_view *v = &t->views[i].view;
+    for (uint32_t i = 0; i < t->views.n; i++) {
+        const adcgs_view *v = &t->views.list[i].view;
         const size_t plane = (size_t)v->width * (size_t)v->height;
-        const uint8_t *const hidden = adcgs_image_store_mask(t->pictures, i);
-        ADCGS_TRY(adcgs_image_store_get(t->pictures, i, t->taken, error));
+        const uint8_t *const hidden = adcgs_image_store_mask(t->views.store, i);
+        ADCGS_TRY(adcgs_image_store_get(t->views.store, i, t->taken, error));
         for (size_t c = 0; c < 3; c++) {
             histogram *h = &of[t->exposure.of[i]][c];
             const float *taken = t->taken + c * plane;

@@ -44,11 +44,12 @@ adcgs_status adcgs_bound_gains(adcgs_trainer *t, adcgs_error *error)
     adcgs_status status = of && brightness ? ADCGS_OK : adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < e->n; i++)
         of[i] = (amount){0, 0};
-    for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
-        const adcgs_view *v = &t->views[i].view;
-        status = adcgs_image_store_get(t->pictures, i, t->taken, error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < t->views.n; i++) {
+        const adcgs_view *v = &t->views.list[i].view;
+        status = adcgs_image_store_get(t->views.store, i, t->taken, error);
         if (status == ADCGS_OK)
-            add_image(&of[e->of[i]], t, t->taken, adcgs_image_store_mask(t->pictures, i), (size_t)v->width * (size_t)v->height);
+            add_image(&of[e->of[i]], t, t->taken, adcgs_image_store_mask(t->views.store, i),
+                      (size_t)v->width * (size_t)v->height);
     }
     for (uint32_t i = 0; status == ADCGS_OK && i < e->n; i++)
         brightness[i] = of[i].n > 0 ? of[i].sum / of[i].n : 0;

@@ -12,13 +12,13 @@ static const double LEAST = 0.1, MOST = 4;
 
 adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_error *error)
 {
-    const uint32_t n = ADCGS_MIN(t->n_views, PICTURES_MOST);
+    const uint32_t n = ADCGS_MIN(t->views.n, PICTURES_MOST);
     double sum[3] = {0, 0, 0}, square = 0, count = 0;
     for (uint32_t i = 0; i < n; i++) {
-        const uint32_t view = (uint32_t)((uint64_t)i * t->n_views / n);
-        const adcgs_view *v = &t->views[view].view;
+        const uint32_t view = (uint32_t)((uint64_t)i * t->views.n / n);
+        const adcgs_view *v = &t->views.list[view].view;
         const size_t plane = (size_t)v->width * (size_t)v->height;
-        ADCGS_TRY(adcgs_image_store_get(t->pictures, view, t->taken, error));
+        ADCGS_TRY(adcgs_image_store_get(t->views.store, view, t->taken, error));
         for (size_t c = 0; c < 3; c++)
             for (size_t j = c * plane; j < (c + 1) * plane; j++) {
                 if (isnan(t->taken[j])) /* masked, or outside the lens's field */
@@ -37,8 +37,8 @@ adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_erro
 
 adcgs_status adcgs_contrast_lambda(adcgs_trainer *t, adcgs_error *error)
 {
-    if (!(t->contrast > 0))
-        ADCGS_TRY(adcgs_contrast(t, &t->contrast, error));
-    t->lambda = adcgs_resolve_contrast(&t->config, fmin(fmax(t->contrast / ADCGS_CONTRAST_NOMINAL, LEAST), MOST));
+    if (!(t->rate.contrast > 0))
+        ADCGS_TRY(adcgs_contrast(t, &t->rate.contrast, error));
+    t->rate.lambda = adcgs_resolve_contrast(&t->config, fmin(fmax(t->rate.contrast / ADCGS_CONTRAST_NOMINAL, LEAST), MOST));
     return ADCGS_OK;
 }

@@ -60,6 +60,14 @@ void adcgs_exposure_clear(adcgs_exposure *e)
     *e = (adcgs_exposure){.n = 0};
 }
 
+void adcgs_exposure_walk(adcgs_checkpoint_walk *walk, adcgs_exposure *e)
+{
+    if (e->n)
+        adcgs_checkpoint_visit(walk, &e->limit, sizeof e->limit);
+    for (uint32_t i = 0; i < e->n; i++)
+        adcgs_checkpoint_visit(walk, &e->cameras[i], sizeof e->cameras[i]);
+}
+
 void adcgs_exposure_sum(const adcgs_exposure *e, uint32_t view, const float *drawn, const float *taken, size_t plane,
                         adcgs_exposure_sums *sums)
 {

@@ -12,6 +12,7 @@
 #define ADCGS_TRAIN_EXPOSURE_EXPOSURE_H
 
 #include "scene/scene.h"
+#include "train/state/visit.h"
 
 /** Sums of drawn * taken and of drawn^2, per channel. */
 typedef struct adcgs_exposure_sums {
@@ -40,6 +41,8 @@ typedef struct adcgs_exposure {
 adcgs_status adcgs_exposure_create(adcgs_exposure *exposure, const adcgs_scene_view *views, uint32_t n_views, int still,
                                    adcgs_error *error);
 void adcgs_exposure_clear(adcgs_exposure *exposure);
+/** Stores or restores the gains. The number of cameras follows from the scene. */
+void adcgs_exposure_walk(adcgs_checkpoint_walk *walk, adcgs_exposure *exposure);
 /** Computes the sums of a view's rendered and recorded images, both [3][plane]. */
 void adcgs_exposure_sum(const adcgs_exposure *exposure, uint32_t view, const float *drawn, const float *taken, size_t plane,
                         adcgs_exposure_sums *sums);

@@ -45,11 +45,11 @@ static void take_squares(adcgs_fmodel *f, float *const h[ADCGS_P_ANCHOR], float 
 
 static adcgs_status project_views(adcgs_trainer *t, float *const h[ADCGS_P_ANCHOR], adcgs_error *error)
 {
-    const uint32_t n = ADCGS_MIN(t->n_views, ADCGS_CURVATURE_VIEWS);
+    const uint32_t n = ADCGS_MIN(t->views.n, ADCGS_CURVATURE_VIEWS);
     const float scale = 1.0f / (float)(n * PROBES);
     t->pass->pull = NULL;
     for (uint32_t i = 0; i < n; i++) {
-        const adcgs_train_view *v = &t->views[(uint64_t)i * t->n_views / n];
+        const adcgs_train_view *v = &t->views.list[(uint64_t)i * t->views.n / n];
         const size_t values = 3 * (size_t)v->view.width * (size_t)v->view.height;
         adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
         ADCGS_TRY(adcgs_view_render(t, &v->view, ADCGS_MEAN_LIGHT, t->image, 1, error));

@@ -4,7 +4,7 @@
 
 adcgs_status adcgs_level_costs(const adcgs_trainer *t, double strength, adcgs_rdo *rdo, adcgs_error *error)
 {
-    if (!t->frozen)
+    if (!t->stage.frozen)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "levels are chosen by rate and distortion only after values are frozen");
     *rdo = (adcgs_rdo){.lambda_bit = t->config.without_rate ? 0 : strength * adcgs_cost_of_bit(t)};
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
@@ -37,5 +37,5 @@ void adcgs_level_densities(adcgs_trainer *t)
         adcgs_pass_rate(t->pass, t->f, &rate);
     else
         adcgs_pass_densities(t->pass, t->f, &rate);
-    memcpy(t->mean_bits, rate.bits, sizeof rate.bits);
+    memcpy(t->rate.mean_bits, rate.bits, sizeof rate.bits);
 }

@@ -46,7 +46,7 @@ static double estimate(const adcgs_trainer *t)
 {
     double bits = 0;
     for (int i = 0; i < ADCGS_GROUPS; i++)
-        bits += t->mean_bits[i];
+        bits += t->rate.mean_bits[i];
     return bits / 8;
 }
 
@@ -55,21 +55,21 @@ static double networks_left(const adcgs_trainer *t)
 {
     const adcgs_train_config *c = &t->config;
     const double again = (double)c->prune_units_again, first = (double)c->prune_units_at * c->iterations;
-    double left = t->rounding ? 1 : LATTICES_LEAVE;
-    if (t->units_pruned < 2 && again < (double)c->quant_round_start && adcgs_train_prunes_units(c))
-        left *= t->units_pruned && first >= ADCGS_UNITS_AFTER ? UNITS_LEAVE_AGAIN : UNITS_LEAVE;
+    double left = t->stage.rounding ? 1 : LATTICES_LEAVE;
+    if (t->stage.units_pruned < 2 && again < (double)c->quant_round_start && adcgs_train_prunes_units(c))
+        left *= t->stage.units_pruned && first >= ADCGS_UNITS_AFTER ? UNITS_LEAVE_AGAIN : UNITS_LEAVE;
     return left;
 }
 
 static adcgs_status measure_size(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_bytes b;
-    if (!t->rounding)
+    if (!t->stage.rounding)
         adcgs_weight_steps_nominal(t);
-    ADCGS_TRY(t->measure(t->measure_user, t, &b, error));
+    ADCGS_TRY(t->rate.measure(t->rate.measure_user, t, &b, error));
     const uint64_t features = b.layer[0] + b.layer[1] + b.layer[2] + b.layer[3] + b.layer[4];
-    t->rate_control.fixed = (double)(b.total - features) - (1 - networks_left(t)) * (double)b.networks;
-    t->rate_control.ratio = (double)features / estimate(t);
+    t->rate.control.fixed = (double)(b.total - features) - (1 - networks_left(t)) * (double)b.networks;
+    t->rate.control.ratio = (double)features / estimate(t);
     return ADCGS_OK;
 }
 
@@ -84,8 +84,8 @@ static double growth_ahead(const adcgs_trainer *t, double progress)
 /** Logarithm of the features' bytes over the bytes available for them. */
 static double size_error(const adcgs_trainer *t, double progress)
 {
-    const double aim = SIZE_LEAD * t->config.target_value, room = fmax(aim - t->rate_control.fixed, ROOM_LEAST * aim);
-    return log(fmax(estimate(t) * t->rate_control.ratio * growth_ahead(t, progress), 1) / room);
+    const double aim = SIZE_LEAD * t->config.target_value, room = fmax(aim - t->rate.control.fixed, ROOM_LEAST * aim);
+    return log(fmax(estimate(t) * t->rate.control.ratio * growth_ahead(t, progress), 1) / room);
 }
 
 double adcgs_rate_bounded(const adcgs_trainer *t, double lambda)
@@ -96,8 +96,8 @@ double adcgs_rate_bounded(const adcgs_trainer *t, double lambda)
 /** Predicts the final PSNR. While views are rendered at reduced size, it is the PSNR there. */
 static adcgs_status foresee_psnr(adcgs_trainer *t, double progress, double *psnr, adcgs_error *error)
 {
-    if (t->divide > t->config.scale) {
-        *psnr = adcgs_psnr_from_mse(t->mean_mse);
+    if (t->views.divide > t->config.scale) {
+        *psnr = adcgs_psnr_from_mse(t->run.mean_mse);
         return ADCGS_OK;
     }
     ADCGS_TRY(adcgs_sample_psnr(t, SAMPLE_VIEWS, psnr, error));
@@ -107,15 +107,15 @@ static adcgs_status foresee_psnr(adcgs_trainer *t, double progress, double *psnr
 
 static double psnr_error(const adcgs_trainer *t)
 {
-    return GAIN_PSNR * (t->rate_control.psnr - t->config.target_value - PSNR_LEAD);
+    return GAIN_PSNR * (t->rate.control.psnr - t->config.target_value - PSNR_LEAD);
 }
 
 static adcgs_status measure(adcgs_trainer *t, double progress, adcgs_error *error)
 {
-    t->rate_control.measured = progress;
+    t->rate.control.measured = progress;
     if (t->config.target == ADCGS_TARGET_SIZE)
         return measure_size(t, error);
-    return foresee_psnr(t, progress, &t->rate_control.psnr, error);
+    return foresee_psnr(t, progress, &t->rate.control.psnr, error);
 }
 
 static double error_of(const adcgs_trainer *t, double progress)
@@ -133,22 +133,24 @@ adcgs_status adcgs_rate_measure(adcgs_trainer *t, double progress, double *off, 
 /** If lambda is at its upper bound and still too small, prunes a part of the least visible anchors. */
 static adcgs_status prune(adcgs_trainer *t, adcgs_error *error)
 {
-    const adcgs_rate_control *s = &t->rate_control;
-    if (t->rounding || t->lambda < (double)t->config.lambda * LAMBDA_REACH || s->error < PRUNE_FROM || t->stats.n < PRUNE_AFTER)
+    const adcgs_rate_control *s = &t->rate.control;
+    if (t->stage.rounding || t->rate.lambda < (double)t->config.lambda * LAMBDA_REACH || s->error < PRUNE_FROM ||
+        t->stats.n < PRUNE_AFTER)
         return ADCGS_OK;
     const double before = t->f->n;
     ADCGS_TRY(adcgs_prune_anchors(t, (uint32_t)(before * fmax(exp(-0.5 * s->error), PRUNE_LEAST)), error));
     for (int i = 0; i < ADCGS_GROUPS; i++) /* a running mean would lag behind */
-        t->mean_bits[i] *= t->f->n / before;
+        t->rate.mean_bits[i] *= t->f->n / before;
     return ADCGS_OK;
 }
 
 adcgs_status adcgs_rate_control_step(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
-    adcgs_rate_control *s = &t->rate_control;
-    const int waits = c->target == ADCGS_TARGET_PSNR && s->tries && !t->rounding; /* full size is rendered but not trained yet */
-    if (c->target == ADCGS_TARGET_NONE || progress < c->rate_start || t->frozen || waits || t->iteration % STEP_EVERY ||
+    adcgs_rate_control *s = &t->rate.control;
+    const int waits =
+        c->target == ADCGS_TARGET_PSNR && s->tries && !t->stage.rounding; /* full size is rendered but not trained yet */
+    if (c->target == ADCGS_TARGET_NONE || progress < c->rate_start || t->stage.frozen || waits || t->run.iteration % STEP_EVERY ||
         !(estimate(t) > 0))
         return ADCGS_OK;
     if (!s->measured || progress >= s->measured + MEASURE_EVERY) {
@@ -157,7 +159,7 @@ adcgs_status adcgs_rate_control_step(adcgs_trainer *t, double progress, adcgs_er
     }
     const double now = error_of(t, progress);
     const double since = s->at > 0 ? progress - s->at : 0;
-    t->lambda = adcgs_rate_bounded(t, t->lambda * exp(GAIN_CHANGE * (now - s->error) + GAIN_ERROR * now * since));
+    t->rate.lambda = adcgs_rate_bounded(t, t->rate.lambda * exp(GAIN_CHANGE * (now - s->error) + GAIN_ERROR * now * since));
     s->error = now;
     s->at = progress;
     return ADCGS_OK;

@@ -32,18 +32,18 @@ static double verdict_at(const adcgs_train_config *c)
 int adcgs_rate_is_sought(const adcgs_trainer *t)
 {
     const adcgs_train_config *c = &t->config;
-    return c->target != ADCGS_TARGET_NONE && t->rate_control.tries < TRIES && !(c->time_limit > 0) && !c->without_rate &&
+    return c->target != ADCGS_TARGET_NONE && t->rate.control.tries < TRIES && !(c->time_limit > 0) && !c->without_rate &&
            verdict_at(c) > (double)c->rate_start && verdict_at(c) < fmin((double)c->quant_round_start, 1);
 }
 
 /** Next lambda, by the power that the last two tries show. */
 static double next_lambda(const adcgs_trainer *t, double off)
 {
-    const adcgs_rate_control *s = &t->rate_control;
+    const adcgs_rate_control *s = &t->rate.control;
     double power = POWER;
     if (s->tries)
-        power = fmin(fmax((s->off - off) / log(t->lambda / s->tried), POWER_LEAST), POWER_MOST);
-    const double wanted = t->lambda * exp(fmin(fmax(off / power, -LEAP), LEAP));
+        power = fmin(fmax((s->off - off) / log(t->rate.lambda / s->tried), POWER_LEAST), POWER_MOST);
+    const double wanted = t->rate.lambda * exp(fmin(fmax(off / power, -LEAP), LEAP));
     return adcgs_rate_bounded(t, wanted);
 }
 
@@ -53,7 +53,7 @@ static adcgs_status keep_beginning(adcgs_trainer *t, adcgs_error *error)
     adcgs_buffer_init(&begin);
     const adcgs_status status = adcgs_trainer_store(t, &begin, error);
     if (status == ADCGS_OK)
-        t->begin = begin;
+        t->rate.begin = begin;
     else
         adcgs_buffer_clear(&begin);
     return status;
@@ -61,29 +61,29 @@ static adcgs_status keep_beginning(adcgs_trainer *t, adcgs_error *error)
 
 adcgs_status adcgs_rate_search_return(adcgs_trainer *t, adcgs_error *error)
 {
-    const double lambda = t->next_lambda;
-    const adcgs_rate_control tried = t->rate_control;
-    const adcgs_time elapsed = t->elapsed;
-    adcgs_buffer begin = t->begin;
-    adcgs_buffer_init(&t->begin); /* the restored state contains none */
+    const double lambda = t->rate.next_lambda;
+    const adcgs_rate_control tried = t->rate.control;
+    const adcgs_time elapsed = t->run.elapsed;
+    adcgs_buffer begin = t->rate.begin;
+    adcgs_buffer_init(&t->rate.begin); /* the restored state contains none */
     const adcgs_status status = adcgs_trainer_restore(t, begin.data, begin.size, error);
-    adcgs_buffer_clear(&t->begin);
-    t->begin = begin;
-    t->rate_control = tried;
-    t->elapsed = elapsed;
-    t->lambda = lambda;
-    t->next_lambda = 0;
+    adcgs_buffer_clear(&t->rate.begin);
+    t->rate.begin = begin;
+    t->rate.control = tried;
+    t->run.elapsed = elapsed;
+    t->rate.lambda = lambda;
+    t->rate.next_lambda = 0;
     return status;
 }
 
 adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const int is_size = t->config.target == ADCGS_TARGET_SIZE;
-    adcgs_rate_control *s = &t->rate_control;
+    adcgs_rate_control *s = &t->rate.control;
     double off;
     if (progress < (double)t->config.rate_start)
         return ADCGS_OK;
-    if (!t->begin.size)
+    if (!t->rate.begin.size)
         return keep_beginning(t, error);
     if (progress < (double)t->config.prune_at + LOOK_AFTER || (s->looked && progress < verdict_at(&t->config)))
         return ADCGS_OK;
@@ -97,25 +97,25 @@ adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_err
     s->error = off; /* control starts here; for a quality, much later, when values are rounded */
     s->at = is_size ? progress : 0;
     off += is_size ? FALL_AHEAD * (off - s->early) : 0;
-    const double lambda = next_lambda(t, off), tried = t->lambda;
+    const double lambda = next_lambda(t, off), tried = t->rate.lambda;
     const int settled = fabs(off) < NEAR || s->tries + 1 == TRIES || lambda == tried;
     s->tries = settled ? TRIES : s->tries + 1;
     s->tried = tried;
     s->off = off;
     if (!settled)
-        t->next_lambda = lambda;
+        t->rate.next_lambda = lambda;
     else if (is_size)
-        adcgs_buffer_clear(&t->begin);
+        adcgs_buffer_clear(&t->rate.begin);
     return ADCGS_OK;
 }
 
 void adcgs_rate_search_end(adcgs_trainer *t, double missing)
 {
-    adcgs_rate_control *s = &t->rate_control;
-    if (missing > 0 && t->begin.size && !s->missed) {
+    adcgs_rate_control *s = &t->rate.control;
+    if (missing > 0 && t->rate.begin.size && !s->missed) {
         s->missed = 1;
         s->tries = TRIES - 1;
-        t->next_lambda = adcgs_rate_bounded(t, s->tried * exp(-(missing + MISSED_DOUBT) / MISSED_POWER));
+        t->rate.next_lambda = adcgs_rate_bounded(t, s->tried * exp(-(missing + MISSED_DOUBT) / MISSED_POWER));
     } else
-        adcgs_buffer_clear(&t->begin);
+        adcgs_buffer_clear(&t->rate.begin);
 }

@@ -53,7 +53,7 @@ static adcgs_status value_now(adcgs_trainer *t, double *value, adcgs_error *erro
     adcgs_bytes bytes;
     if (t->config.target == ADCGS_TARGET_PSNR)
         return adcgs_sample_psnr(t, UINT32_MAX, value, error);
-    ADCGS_TRY(t->measure(t->measure_user, t, &bytes, error));
+    ADCGS_TRY(t->rate.measure(t->rate.measure_user, t, &bytes, error));
     *value = (double)bytes.total;
     return ADCGS_OK;
 }
@@ -94,7 +94,7 @@ static adcgs_status seek(adcgs_trainer *t, const window *w, double *strength, do
 /** Drops the least visible anchors, as many as the size requires if bytes are proportional to anchors. */
 static adcgs_status prune(adcgs_trainer *t, const window *w, double bytes, adcgs_error *error)
 {
-    const double fixed = ADCGS_MIN(t->rate_control.fixed, w->high), share = (w->high - fixed) / (bytes - fixed);
+    const double fixed = ADCGS_MIN(t->rate.control.fixed, w->high), share = (w->high - fixed) / (bytes - fixed);
     return adcgs_prune_anchors(t, (uint32_t)(t->f->n * fmin(fmax(share, PRUNE_LEAST), PRUNE_MOST)), error);
 }
 
@@ -145,11 +145,11 @@ adcgs_status adcgs_rate_target_frozen(adcgs_trainer *t, adcgs_error *error)
         return ADCGS_OK;
     ADCGS_TRY(adcgs_trainer_load_views(t, 1, error));
     const double aim = target - PSNR_GAIN;
-    if (t->begin.size) {
+    if (t->rate.begin.size) {
         double value;
         ADCGS_TRY(value_now(t, &value, error));
         adcgs_rate_search_end(t, aim - PSNR_NEAR - value);
-        if (t->next_lambda > 0)
+        if (t->rate.next_lambda > 0)
             return ADCGS_OK;
     }
     return land(t, &(window){aim - PSNR_NEAR, aim + PSNR_NEAR}, error);
@@ -164,7 +164,7 @@ adcgs_status adcgs_rate_target_finish(adcgs_trainer *t, adcgs_error *error)
         return ADCGS_OK;
     if (t->config.target == ADCGS_TARGET_PSNR) {
         w = (window){target - PSNR_NEAR, target + PSNR_NEAR};
-        if (t->divide != 1)
+        if (t->views.divide != 1)
             ADCGS_TRY(adcgs_trainer_load_views(t, 1, error));
     }
     ADCGS_TRY(value_now(t, &now, error));

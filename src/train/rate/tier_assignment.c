@@ -90,7 +90,7 @@ static void survey_end(survey *s)
 
 static adcgs_status survey_begin(survey *s, adcgs_trainer *t, adcgs_error *error)
 {
-    const int n = (int)ADCGS_MIN(t->n_views, (uint32_t)VIEWS);
+    const int n = (int)ADCGS_MIN(t->views.n, (uint32_t)VIEWS);
     *s = (survey){.t = t};
     s->change = adcgs_alloc(NULL, t->f->n, sizeof *s->change, error);
     s->worth = adcgs_alloc(NULL, t->f->n, sizeof *s->worth, error);
@@ -99,7 +99,7 @@ static adcgs_status survey_begin(survey *s, adcgs_trainer *t, adcgs_error *error
         return adcgs_alloc_status(error);
     for (; s->n < n; s->n++) {
         lookout *l = &s->at[s->n];
-        look_from(l, &t->views[(uint64_t)s->n * t->n_views / (uint64_t)n]);
+        look_from(l, &t->views.list[(uint64_t)s->n * t->views.n / (uint64_t)n]);
         l->whole = adcgs_alloc(NULL, l->values, sizeof *l->whole, error);
         if (!l->whole)
             return adcgs_alloc_status(error);
@@ -242,16 +242,17 @@ adcgs_status adcgs_tiers_fit(adcgs_trainer *t, adcgs_error *error)
 adcgs_status adcgs_tiers_train(adcgs_trainer *t, uint32_t view, const adcgs_pass_mode *mode, adcgs_error *error)
 {
     const adcgs_fmodel *f = t->f;
-    const uint64_t draw = adcgs_random64(t->config.seed, 3001, t->iteration);
-    if (!f->finest || f->follows || t->frozen || f->params.adaptive_steps || t->config.tier_weight <= 0 || draw % LEARN_EVERY)
+    const uint64_t draw = adcgs_random64(t->config.seed, 3001, t->run.iteration);
+    if (!f->finest || f->follows || t->stage.frozen || f->params.adaptive_steps || t->config.tier_weight <= 0 ||
+        draw % LEARN_EVERY)
         return ADCGS_OK;
     const int tiers = 1 + (int)(draw / LEARN_EVERY % f->finest);
-    const adcgs_view *v = &t->views[view].view;
+    const adcgs_view *v = &t->views.list[view].view;
     adcgs_raster_grads grads = t->pass->grads;
     adcgs_loss_value value;
     const float *target;
     grads.screen = NULL;
-    adcgs_pass_forward(t->pass, f, t->views[view].t, mode);
+    adcgs_pass_forward(t->pass, f, t->views.list[view].t, mode);
     show(t, tiers);
     ADCGS_TRY(adcgs_view_render(t, v, view, t->image, 1, error));
     ADCGS_TRY(adcgs_trainer_target(t, view, NULL, &target, error));

@@ -18,9 +18,9 @@ static const char magic[8] = {'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P'};
 static adcgs_status find_content(const adcgs_trainer *trainer, adcgs_error *error)
 {
     adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* the digest does not affect the run */
-    if (!t->has_content)
-        ADCGS_TRY(adcgs_scene_content(t->scene, ADCGS_SPLIT_TRAIN, t->content, error));
-    t->has_content = 1;
+    if (!t->views.has_content)
+        ADCGS_TRY(adcgs_scene_content(t->scene, ADCGS_SPLIT_TRAIN, t->views.content, error));
+    t->views.has_content = 1;
     return ADCGS_OK;
 }
 
@@ -33,7 +33,7 @@ static adcgs_status save(const adcgs_trainer *t, const adcgs_buffer *snapshot, c
     adcgs_checkpoint_walk w = {.file = atomic.file};
     errno = 0;
     adcgs_checkpoint_visit(&w, (void *)(uintptr_t)magic, sizeof magic);
-    adcgs_checkpoint_visit(&w, (void *)(uintptr_t)t->content, sizeof t->content);
+    adcgs_checkpoint_visit(&w, (void *)(uintptr_t)t->views.content, sizeof t->views.content);
     if (snapshot)
         adcgs_checkpoint_visit(&w, snapshot->data, snapshot->size);
     else
@@ -55,30 +55,30 @@ adcgs_status adcgs_trainer_save(const adcgs_trainer *t, const char *path, adcgs_
 
 uint32_t adcgs_trainer_rescued(const adcgs_trainer *t)
 {
-    return !t->torn ? t->iteration : t->snapshot.size && !t->snapshot.failed ? t->snapshot_at : 0;
+    return !t->run.torn ? t->run.iteration : t->run.snapshot.size && !t->run.snapshot.failed ? t->run.snapshot_at : 0;
 }
 
 adcgs_status adcgs_trainer_rescue(const adcgs_trainer *t, const char *path, adcgs_error *error)
 {
     if (!adcgs_trainer_rescued(t))
         return adcgs_fail(error, ADCGS_ERR_DATA, "nothing to save: the run is before its first iteration");
-    return save(t, t->torn ? &t->snapshot : NULL, path, error);
+    return save(t, t->run.torn ? &t->run.snapshot : NULL, path, error);
 }
 
 /** Restores from the contents of a file. */
 static adcgs_status restore_file(adcgs_trainer *t, const uint8_t *data, size_t size, adcgs_error *error)
 {
-    const size_t head = sizeof magic + sizeof t->content;
+    const size_t head = sizeof magic + sizeof t->views.content;
     if (size < head + 4 || memcmp(data, magic, sizeof magic))
         return adcgs_fail(error, ADCGS_ERR_DATA, "not a checkpoint of adcgs-enc");
     if (adcgs_crc32c(0, data, size - 4) != adcgs_load_le32(data + size - 4))
         return adcgs_fail(error, ADCGS_ERR_DATA, "damaged: its checksum does not match");
-    static const uint8_t unknown[sizeof t->content];
+    static const uint8_t unknown[sizeof t->views.content];
     ADCGS_TRY(adcgs_trainer_restore(t, data + head, size - 4 - head, error));
     if (!memcmp(data + sizeof magic, unknown, sizeof unknown)) /* a failed run did not read the images */
         return ADCGS_OK;
     ADCGS_TRY(find_content(t, error));
-    if (memcmp(data + sizeof magic, t->content, sizeof t->content))
+    if (memcmp(data + sizeof magic, t->views.content, sizeof t->views.content))
         return adcgs_fail(error, ADCGS_ERR_DATA, "saved with another scene: the files of the training images have changed");
     return ADCGS_OK;
 }

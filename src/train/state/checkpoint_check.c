@@ -49,18 +49,20 @@ static int curriculum_is_sound(const adcgs_trainer *t)
 
 static int flags_are_sound(const adcgs_trainer *t)
 {
-    const uint8_t flags[] = {t->lambda_used, t->fixed_unchanging, t->motion_tested, t->pruned, t->tiered, t->rounding, t->frozen};
-    return are_at_most(flags, sizeof flags, 1) && t->units_pruned <= 2 && (!t->frozen || t->rounding);
+    const uint8_t flags[] = {t->rate.lambda_used, t->stage.fixed_unchanging, t->stage.motion_tested, t->stage.pruned,
+                             t->stage.tiered,     t->stage.rounding,         t->stage.frozen};
+    return are_at_most(flags, sizeof flags, 1) && t->stage.units_pruned <= 2 && (!t->stage.frozen || t->stage.rounding);
 }
 
 /** Checks the control variables. Trained values need not be finite: a run that finds one that is not rolls back by itself. */
 static int numbers_are_sound(const adcgs_trainer *t)
 {
-    const double numbers[] = {(double)t->lr_scale, t->contrast, t->lambda, t->least_mse, t->elapsed.clock, t->elapsed.cpu};
+    const double numbers[] = {(double)t->run.lr_scale, t->rate.contrast,     t->rate.lambda,
+                              t->run.least_mse,        t->run.elapsed.clock, t->run.elapsed.cpu};
     for (size_t i = 0; i < ADCGS_COUNTOF(numbers); i++)
         if (!isfinite(numbers[i]) || numbers[i] < 0)
             return 0;
-    return t->lr_scale <= 1;
+    return t->run.lr_scale <= 1;
 }
 
 /** Checks weight steps: an exponent that a stream can hold, or none. */

@@ -9,24 +9,6 @@
 
 #include <stdarg.h>
 
-void adcgs_checkpoint_visit(adcgs_checkpoint_walk *w, void *data, size_t bytes)
-{
-    if (w->out) {
-        adcgs_write_bytes(w->out, data, bytes);
-        return;
-    }
-    if (w->file) {
-        w->crc = adcgs_crc32c(w->crc, data, bytes);
-        w->unwritten |= fwrite(data, 1, bytes, w->file) != bytes;
-        return;
-    }
-    const uint8_t *from = adcgs_read_bytes(w->in, bytes);
-    if (from)
-        memcpy(data, from, bytes);
-    else
-        w->failed = 1;
-}
-
 /** Puts a mismatch into the message; only the first one is kept. */
 static void differ(adcgs_checkpoint_walk *w, const char *format, ...) ADCGS_PRINTF(2, 3);
 static void differ(adcgs_checkpoint_walk *w, const char *format, ...)
@@ -45,19 +27,20 @@ static void walk_target(adcgs_checkpoint_walk *w, adcgs_trainer *t)
     const adcgs_train_config *c = &t->config;
     uint32_t target = c->target;
     double value = c->target_value;
-    adcgs_checkpoint_visit(w, &t->lambda_used, sizeof t->lambda_used);
+    adcgs_checkpoint_visit(w, &t->rate.lambda_used, sizeof t->rate.lambda_used);
     adcgs_checkpoint_visit(w, &target, sizeof target);
     adcgs_checkpoint_visit(w, &value, sizeof value);
-    if (t->lambda_used && (target != c->target || value != c->target_value))
+    if (t->rate.lambda_used && (target != c->target || value != c->target_value))
         differ(w, "saved with other options: another target, and the run depends on it by now");
 }
 
 /** All settings. The time limit is not one of them, so a run may continue with another. */
 static void walk_settings(adcgs_checkpoint_walk *w, adcgs_trainer *t)
 {
-    adcgs_checkpoint_visit(w, &t->rounding, sizeof t->rounding);
+    adcgs_checkpoint_visit(w, &t->stage.rounding, sizeof t->stage.rounding);
     for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
-        const int bound = s->fixed == ADCGS_FIXED_WITH_LAMBDA ? t->lambda_used : s->fixed == ADCGS_FIXED_ALWAYS || t->rounding;
+        const int bound =
+            s->fixed == ADCGS_FIXED_WITH_LAMBDA ? t->rate.lambda_used : s->fixed == ADCGS_FIXED_ALWAYS || t->stage.rounding;
         const double here = adcgs_setting_get(s, &t->config);
         char texts[2][ADCGS_SETTING_TEXT];
         double there = here;
@@ -95,12 +78,12 @@ static void walk_scene(adcgs_checkpoint_walk *w, const adcgs_trainer *t)
 {
     const adcgs_scene *s = t->scene;
     uint32_t cameras = 0, times = 0;
-    uint64_t n = t->n_views;
+    uint64_t n = t->views.n;
     adcgs_checkpoint_visit(w, &n, sizeof n);
-    if (n != t->n_views)
+    if (n != t->views.n)
         differ(w, "saved with another scene: %llu training view%s in the file and %u here", (unsigned long long)n, adcgs_s(n),
-               t->n_views);
-    for (uint32_t i = 0; i < t->n_views; i++) {
+               t->views.n);
+    for (uint32_t i = 0; i < t->views.n; i++) {
         const adcgs_scene_view *v = &s->views[ADCGS_SPLIT_TRAIN][i];
         cameras = add_camera(cameras, v);
         times = adcgs_crc32c(times, &v->time, sizeof v->time);
@@ -136,30 +119,13 @@ static void walk_config(adcgs_checkpoint_walk *w, adcgs_trainer *t)
     walk_settings(w, t);
 }
 
-static void walk_scalars(adcgs_checkpoint_walk *w, adcgs_trainer *t)
+static void walk_parts(adcgs_checkpoint_walk *w, adcgs_trainer *t)
 {
-    adcgs_checkpoint_visit(w, &t->iteration, sizeof t->iteration);
-    adcgs_checkpoint_visit(w, &t->fixed_unchanging, sizeof t->fixed_unchanging);
-    adcgs_checkpoint_visit(w, &t->motion_tested, sizeof t->motion_tested);
-    adcgs_checkpoint_visit(w, &t->units_pruned, sizeof t->units_pruned);
-    adcgs_checkpoint_visit(w, &t->pruned, sizeof t->pruned);
-    adcgs_checkpoint_visit(w, &t->tiered, sizeof t->tiered);
-    adcgs_checkpoint_visit(w, &t->frozen, sizeof t->frozen);
-    adcgs_checkpoint_visit(w, &t->unfreeze_tests, sizeof t->unfreeze_tests);
-    adcgs_checkpoint_visit(w, &t->lr_scale, sizeof t->lr_scale);
-    adcgs_checkpoint_visit(w, &t->contrast, sizeof t->contrast);
-    adcgs_checkpoint_visit(w, &t->lambda, sizeof t->lambda);
-    adcgs_checkpoint_visit(w, &t->rate_control, sizeof t->rate_control);
-    adcgs_checkpoint_visit(w, &t->curriculum.n, sizeof t->curriculum.n);
-    adcgs_checkpoint_visit(w, &t->curriculum.first, sizeof t->curriculum.first);
-    adcgs_checkpoint_visit(w, &t->curriculum.last, sizeof t->curriculum.last);
-    adcgs_checkpoint_visit(w, &t->rollbacks, sizeof t->rollbacks);
-    adcgs_checkpoint_visit(w, &t->mean_loss, sizeof t->mean_loss);
-    adcgs_checkpoint_visit(w, &t->mean_mse, sizeof t->mean_mse);
-    adcgs_checkpoint_visit(w, &t->least_mse, sizeof t->least_mse);
-    adcgs_checkpoint_visit(w, t->mean_bits, sizeof t->mean_bits);
-    adcgs_checkpoint_visit(w, &t->elapsed, sizeof t->elapsed);
-    adcgs_checkpoint_visit(w, &t->decisions, sizeof t->decisions);
+    adcgs_run_state_walk(w, &t->run);
+    adcgs_stage_state_walk(w, &t->stage);
+    adcgs_rate_state_walk(w, &t->rate);
+    adcgs_curriculum_walk(w, &t->curriculum);
+    adcgs_decisions_walk(w, &t->decisions);
 }
 
 /** Hidden layers may be narrower than at the start. */
@@ -219,43 +185,17 @@ static void walk_average(adcgs_checkpoint_walk *w, adcgs_trainer *t)
         adcgs_checkpoint_visit(w, a->mean, a->size * sizeof *a->mean);
 }
 
-/** The number of cameras follows from the scene. */
-static void walk_exposure(adcgs_checkpoint_walk *w, adcgs_trainer *t)
-{
-    if (t->exposure.n)
-        adcgs_checkpoint_visit(w, &t->exposure.limit, sizeof t->exposure.limit);
-    for (uint32_t i = 0; i < t->exposure.n; i++)
-        adcgs_checkpoint_visit(w, &t->exposure.cameras[i], sizeof t->exposure.cameras[i]);
-}
-
-/** The state to return to in a rate search. It is itself a checkpoint without such a state. */
-static void walk_begin(adcgs_checkpoint_walk *w, adcgs_trainer *t)
-{
-    uint64_t n = t->begin.size;
-    adcgs_checkpoint_visit(w, &n, sizeof n);
-    if (!w->in) {
-        adcgs_checkpoint_visit(w, t->begin.data, n);
-        return;
-    }
-    const uint8_t *from = w->failed || n > adcgs_reader_left(w->in) ? NULL : adcgs_read_bytes(w->in, n);
-    w->failed |= !from;
-    t->begin.size = 0;
-    if (from)
-        adcgs_write_bytes(&t->begin, from, n);
-    w->failed |= t->begin.failed;
-}
-
 void adcgs_checkpoint_walk_all(adcgs_checkpoint_walk *w, const adcgs_trainer *trainer)
 {
     adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* the storing visitors only read */
     walk_config(w, t);
-    walk_scalars(w, t);
+    walk_parts(w, t);
     adcgs_checkpoint_visit(w, &t->f->n, sizeof t->f->n);
     adcgs_checkpoint_visit(w, t->f->pos, t->f->n * sizeof *t->f->pos);
     walk_arrays(w, t);
     walk_average(w, t);
-    walk_exposure(w, t);
-    walk_begin(w, t);
+    adcgs_exposure_walk(w, &t->exposure);
+    adcgs_rate_state_walk_begin(w, &t->rate);
 }
 
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error)
@@ -298,12 +238,12 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s", w.differs);
     if (w.failed)
         return adcgs_fail(error, ADCGS_ERR_DATA, "it ends too early");
-    walk_scalars(&w, t);
+    walk_parts(&w, t);
     ADCGS_TRY(restore_anchors(&w, t, error));
     walk_arrays(&w, t);
     walk_average(&w, t);
-    walk_exposure(&w, t);
-    walk_begin(&w, t);
+    adcgs_exposure_walk(&w, &t->exposure);
+    adcgs_rate_state_walk_begin(&w, &t->rate);
     if (w.failed || adcgs_reader_left(&reader))
         return adcgs_fail(error, ADCGS_ERR_DATA, "its length does not match its contents");
     const char *const wrong = adcgs_checkpoint_check(t);

@@ -5,6 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
+void adcgs_decisions_walk(adcgs_checkpoint_walk *walk, adcgs_decisions *decisions)
+{
+    adcgs_checkpoint_visit(walk, decisions, sizeof *decisions);
+}
+
 void adcgs_decisions_list(const adcgs_decisions *d, adcgs_decision list[ADCGS_DECISIONS])
 {
     const adcgs_decision all[] = {

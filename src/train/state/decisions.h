@@ -6,6 +6,8 @@
 #ifndef ADCGS_TRAIN_STATE_DECISIONS_H
 #define ADCGS_TRAIN_STATE_DECISIONS_H
 
+#include "train/state/visit.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -33,6 +35,8 @@ typedef struct adcgs_decision {
 /* Number of values, definition; bytes of their text, arithmetic: names and numbers of all of them fit. */
 enum { ADCGS_DECISIONS = 14, ADCGS_DECISIONS_TEXT = 320 };
 
+/** Stores or restores all values. */
+void adcgs_decisions_walk(adcgs_checkpoint_walk *walk, adcgs_decisions *decisions);
 void adcgs_decisions_list(const adcgs_decisions *decisions, adcgs_decision list[ADCGS_DECISIONS]);
 /** "points=18231 began=4500 ...", without values of 0. */
 void adcgs_decisions_format(const adcgs_decisions *decisions, char text[ADCGS_DECISIONS_TEXT]);

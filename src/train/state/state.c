@@ -60,33 +60,33 @@ float adcgs_trainer_time(const adcgs_trainer *t, double seconds)
 
 static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
 {
-    t->n_views = t->scene->n_views[ADCGS_SPLIT_TRAIN];
-    t->views = adcgs_alloc(NULL, t->n_views, sizeof *t->views, error);
+    t->views.n = t->scene->n_views[ADCGS_SPLIT_TRAIN];
+    t->views.list = adcgs_alloc(NULL, t->views.n, sizeof *t->views.list, error);
     t->batch.results = adcgs_alloc(NULL, t->config.batch, sizeof *t->batch.results, error);
-    float *times = adcgs_alloc(NULL, t->n_views, sizeof *times, error);
-    adcgs_status status = t->views && t->batch.results && times ? ADCGS_OK : adcgs_alloc_status(error);
-    for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++)
-        times[i] = t->views[i].t = adcgs_trainer_time(t, t->scene->views[ADCGS_SPLIT_TRAIN][i].time);
+    float *times = adcgs_alloc(NULL, t->views.n, sizeof *times, error);
+    adcgs_status status = t->views.list && t->batch.results && times ? ADCGS_OK : adcgs_alloc_status(error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < t->views.n; i++)
+        times[i] = t->views.list[i].t = adcgs_trainer_time(t, t->scene->views[ADCGS_SPLIT_TRAIN][i].time);
     if (status == ADCGS_OK)
-        status = adcgs_curriculum_create(&t->curriculum, times, t->n_views, t->f->follows, error);
+        status = adcgs_curriculum_create(&t->curriculum, times, t->views.n, t->f->follows, error);
     for (uint32_t b = 0; t->f->follows && b < t->stereo.n_bodies; b++)
         t->curriculum.known |= (uint16_t)((t->stereo.body[b].pose != NULL) << b);
     adcgs_free(NULL, times);
     if (status == ADCGS_OK)
         status =
-            adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, t->scene->n_times <= 1, error);
+            adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->views.n, t->scene->n_times <= 1, error);
     return status;
 }
 
 static adcgs_status create_viewpoints(adcgs_trainer *t, adcgs_error *error)
 {
-    float(*x)[3] = adcgs_alloc(NULL, t->n_views, sizeof *x, error);
+    float(*x)[3] = adcgs_alloc(NULL, t->views.n, sizeof *x, error);
     if (!x)
         return adcgs_alloc_status(error);
-    for (uint32_t i = 0; i < t->n_views; i++)
+    for (uint32_t i = 0; i < t->views.n; i++)
         for (int a = 0; a < 3; a++)
             x[i][a] = (float)((t->scene->views[ADCGS_SPLIT_TRAIN][i].camera.cam_to_world[4 * a + 3] - t->origin[a]) / t->scale);
-    const adcgs_status status = adcgs_viewpoints_create(&t->viewpoints, (const float(*)[3])x, t->n_views, error);
+    const adcgs_status status = adcgs_viewpoints_create(&t->viewpoints, (const float(*)[3])x, t->views.n, error);
     adcgs_free(NULL, x);
     return status;
 }
@@ -184,15 +184,15 @@ adcgs_status adcgs_trainer_create_from(adcgs_trainer **out, const adcgs_scene *s
     t->scene = scene;
     t->cpu = cpu;
     t->pool = pool;
-    t->lr_scale = 1;
-    adcgs_buffer_init(&t->snapshot);
-    adcgs_buffer_init(&t->begin);
+    t->run.lr_scale = 1;
+    adcgs_buffer_init(&t->run.snapshot);
+    adcgs_buffer_init(&t->rate.begin);
     if (input->matched) {
         t->stereo = *input->matched;
         *input->matched = (adcgs_stereo){.n_still = 0};
     }
     const adcgs_status status = create_parts(t, input, error);
-    t->lambda = (double)t->config.lambda;
+    t->rate.lambda = (double)t->config.lambda;
     if (status != ADCGS_OK)
         adcgs_trainer_free(&t);
     *out = t;
@@ -201,7 +201,7 @@ adcgs_status adcgs_trainer_create_from(adcgs_trainer **out, const adcgs_scene *s
 
 void adcgs_views_unload(adcgs_trainer *t)
 {
-    adcgs_image_store_free(&t->pictures);
+    adcgs_image_store_free(&t->views.store);
     adcgs_free(NULL, t->image);
     adcgs_free(NULL, t->grad);
     adcgs_free(NULL, t->taken);
@@ -214,7 +214,7 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     if (!t)
         return;
     adcgs_views_unload(t);
-    adcgs_free(NULL, t->views);
+    adcgs_free(NULL, t->views.list);
     adcgs_free(NULL, t->stats.weight);
     adcgs_fmodel_free(&t->f);
     adcgs_pass_free(&t->pass);
@@ -229,21 +229,21 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_train_batch_forget(&t->batch);
     adcgs_free(NULL, t->batch.results);
     adcgs_weight_average_clear(&t->average);
-    adcgs_buffer_clear(&t->snapshot);
-    adcgs_buffer_clear(&t->begin);
+    adcgs_run_state_clear(&t->run);
+    adcgs_rate_state_clear(&t->rate);
     adcgs_free(NULL, t);
     *trainer = NULL;
 }
 
 double adcgs_trainer_progress(const adcgs_trainer *t)
 {
-    const double by_count = (double)t->iteration / t->config.iterations;
-    return t->config.time_limit > 0 ? fmax(by_count, t->elapsed.clock / t->config.time_limit) : by_count;
+    const double by_count = (double)t->run.iteration / t->config.iterations;
+    return t->config.time_limit > 0 ? fmax(by_count, t->run.elapsed.clock / t->config.time_limit) : by_count;
 }
 
 void adcgs_trainer_prepare_networks(adcgs_trainer *t)
 {
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
         if (t->f->mlp[i].n)
-            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->rounding);
+            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->stage.rounding);
 }

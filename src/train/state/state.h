@@ -13,21 +13,16 @@
 #include "fmodel/weight_average.h"
 #include "grad/loss.h"
 #include "init/stereo.h"
-#include "scene/image_store.h"
 #include "train/exposure/exposure.h"
 #include "train/rate/rate_state.h"
-#include "train/schedule.h"
 #include "train/state/decisions.h"
+#include "train/state/run_state.h"
+#include "train/state/stage_state.h"
+#include "train/state/view_state.h"
 #include "train/team/team.h"
 #include "train/team/tree_sum.h"
 #include "train/time_curriculum.h"
-#include "train/time_left.h"
 #include "train/trial/trial.h"
-
-typedef struct adcgs_train_view {
-    adcgs_view view;
-    float t;
-} adcgs_train_view;
 
 /** Sums since the last densification, per slot. */
 typedef struct adcgs_train_stats {
@@ -67,63 +62,33 @@ typedef struct adcgs_trainer {
     const adcgs_scene *scene;
     adcgs_cpu_level cpu;
     adcgs_pool *pool;
+    const adcgs_team *team; /* runs that share the work; NULL: none */
     double origin[3], scale;
     adcgs_fmodel *f;
+    /* Work of a view pass. */
     adcgs_pass *pass;
     adcgs_raster *raster;
     adcgs_raster_back *back;
     adcgs_loss *loss;
+    float *image, *grad;
+    float *taken; /* recorded image of the current view */
+    adcgs_train_stats stats;
+    adcgs_train_batch batch;
+    /* Parts, each owned by its stage. */
+    adcgs_run_state run;
+    adcgs_stage_state stage;
+    adcgs_rate_state rate;
+    adcgs_view_state views;
     adcgs_rigidity rigid;
     adcgs_curriculum curriculum;
     adcgs_exposure exposure;
     adcgs_viewpoints viewpoints;
     adcgs_stereo stereo;
-    uint32_t n_views;
-    adcgs_train_view *views;
-    adcgs_image_store *pictures;        /* of the training views */
-    int divide;                         /* of the loaded views; 0: none */
-    uint64_t picture_memory;            /* maximum bytes of them; 0: half of the machine's memory */
-    adcgs_image_store_progress loading; /* called for each loaded image, or NULL */
-    void *loading_user;
-    adcgs_thumbnail *thumbnails; /* [n_views] of loaded images, owned by the caller; NULL: not wanted */
-    float *image, *grad;
-    float *taken; /* recorded image of the current view */
-    adcgs_train_stats stats;
-    adcgs_train_batch batch;
     adcgs_weight_average average;
-    adcgs_train_quantise quantise; /* provided by the code that builds streams; NULL: values stay unquantised */
-    adcgs_train_measure measure;   /* likewise; used if there is a target size */
-    void *measure_user;
-    const adcgs_team *team; /* runs that share the work; NULL: none */
-    int until_lambda;       /* 1: stop before the first iteration that lambda affects */
-    /* State in checkpoints in addition to the model. */
-    uint32_t iteration;
-    uint8_t lambda_used; /* 1: lambda has affected the run and must not change */
-    uint8_t fixed_unchanging, motion_tested, units_pruned, pruned, tiered, rounding, frozen;
-    uint8_t unfreeze_tests; /* number of times that anchors were tested for unfreezing */
-    uint8_t before[16];     /* digest of the previous segment's model; 0 without one */
-    float lr_scale;
-    double contrast; /* of the initial training images; 0: unknown */
-    double lambda;   /* of the rate; the configuration's, scaled by contrast or controlled by a target */
-    adcgs_rate_control rate_control;
-    uint32_t rollbacks;
-    int diverged; /* the run ended after too many rollbacks */
-    double mean_loss, mean_mse;
-    double least_mse;   /* minimum of mean_mse; 0 before the first iteration */
-    adcgs_time elapsed; /* of all programs that took part in the run */
-    double mean_bits[ADCGS_GROUPS];
     adcgs_decisions decisions;
+    adcgs_train_quantise quantise;  /* provided by the code that builds streams; NULL: values stay unquantised */
+    uint8_t before[16];             /* digest of the previous segment's model; 0 without one */
     char trials[ADCGS_TRIALS_TEXT]; /* results of trials before the run, for the stream; "" without trials */
-    /* State that is not in checkpoints. */
-    adcgs_time started; /* start of this program's time; clock 0: when the run begins or continues */
-    adcgs_time_left left;
-    uint8_t content[16]; /* of the training images' files; see adcgs_scene_content() */
-    int has_content;     /* 1: known; computed once, when a file needs it */
-    adcgs_buffer snapshot;
-    uint32_t snapshot_at; /* its iteration */
-    int torn;             /* 1: the state is between two steps of a change; only the snapshot is consistent */
-    double next_lambda;   /* > 0: the loop returns to rate_start with this lambda; see rate_search.h */
-    adcgs_buffer begin;   /* in checkpoints, too: state at rate_start, while the run may return; see rate_search.h */
 } adcgs_trainer;
 
 /** ADCGS_ERR_USAGE for a configuration that does not pass adcgs_train_check(). */
@@ -157,7 +122,7 @@ double adcgs_trainer_progress(const adcgs_trainer *trainer);
 /** Loss per bit: lambda is the loss per mebibyte. */
 static inline double adcgs_cost_of_bit(const adcgs_trainer *t)
 {
-    return t->lambda * 0x1p-23;
+    return t->rate.lambda * 0x1p-23;
 }
 
 #endif

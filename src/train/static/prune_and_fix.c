@@ -67,7 +67,7 @@ static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error 
         return adcgs_alloc_status(error);
     const float usual = usual_opacity(t);
     /* Scene units per pixel of the full resolution at unit distance. */
-    const float pixel = (float)t->config.scale / (t->views[0].view.fx * (float)t->divide);
+    const float pixel = (float)t->config.scale / (t->views.list[0].view.fx * (float)t->views.divide);
     adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_NONE});
     memcpy(still, t->pass->prim, slots * ADCGS_ROWS * sizeof *still);
     for (int step = 0; step < DECIDE_TIMES; step++) {

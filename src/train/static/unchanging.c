@@ -19,15 +19,16 @@ enum {
 static adcgs_status find_changing(const adcgs_trainer *t, const uint32_t *view, uint32_t n, uint8_t *region, adcgs_error *error)
 {
     adcgs_changes *changes;
-    ADCGS_TRY(adcgs_changes_create(&changes, t->views[view[0]].view.width, t->views[view[0]].view.height, error));
+    ADCGS_TRY(adcgs_changes_create(&changes, t->views.list[view[0]].view.width, t->views.list[view[0]].view.height, error));
     adcgs_status status = ADCGS_OK;
     for (uint32_t i = 0; status == ADCGS_OK && i < n; i++) {
-        status = adcgs_image_store_get(t->pictures, view[i], t->taken, error);
+        status = adcgs_image_store_get(t->views.store, view[i], t->taken, error);
         if (status == ADCGS_OK)
             adcgs_changes_add(changes, t->taken);
     }
     if (status == ADCGS_OK)
-        status = adcgs_changes_region(changes, adcgs_changes_least(changes, UNSEEN * t->contrast, t->mean_mse), region, error);
+        status = adcgs_changes_region(changes, adcgs_changes_least(changes, UNSEEN * t->rate.contrast, t->run.mean_mse), region,
+                                      error);
     adcgs_changes_free(&changes);
     return status;
 }
@@ -62,12 +63,12 @@ static adcgs_status add_picture(adcgs_trainer *t, const adcgs_train_view *v, con
 static adcgs_status add_camera(adcgs_trainer *t, const uint32_t *view, uint32_t n, float *drawn, float *changing,
                                adcgs_error *error)
 {
-    const adcgs_view *const camera = &t->views[view[0]].view;
+    const adcgs_view *const camera = &t->views.list[view[0]].view;
     uint8_t *const region = adcgs_alloc(NULL, (size_t)camera->width * (size_t)camera->height, 1, error);
     adcgs_status status = region ? find_changing(t, view, n, region, error) : adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < n; i++)
         if (i * PICTURES_DRAWN / n != (i + 1) * PICTURES_DRAWN / n)
-            status = add_picture(t, &t->views[view[i]], region, drawn, changing, error);
+            status = add_picture(t, &t->views.list[view[i]], region, drawn, changing, error);
     adcgs_free(NULL, region);
     return status;
 }
@@ -77,10 +78,10 @@ static adcgs_status add_cameras(adcgs_trainer *t, uint32_t *of, uint32_t *order,
                                 adcgs_error *error)
 {
     uint32_t cameras, n;
-    ADCGS_TRY(adcgs_group_views(t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, of, order, &cameras, error));
-    for (uint32_t i = 0; i < t->n_views; i += n) {
+    ADCGS_TRY(adcgs_group_views(t->scene->views[ADCGS_SPLIT_TRAIN], t->views.n, of, order, &cameras, error));
+    for (uint32_t i = 0; i < t->views.n; i += n) {
         n = 1;
-        while (i + n < t->n_views && of[order[i + n]] == of[order[i]])
+        while (i + n < t->views.n && of[order[i + n]] == of[order[i]])
             n++;
         if (n >= PICTURES_LEAST)
             ADCGS_TRY(add_camera(t, order + i, n, drawn, changing, error));
@@ -91,10 +92,10 @@ static adcgs_status add_cameras(adcgs_trainer *t, uint32_t *of, uint32_t *order,
 adcgs_status adcgs_changing_share(adcgs_trainer *t, float *share, adcgs_error *error)
 {
     float *const drawn = adcgs_alloc(NULL, t->f->n, sizeof *drawn, error);
-    uint32_t *const of = adcgs_alloc(NULL, 2 * (size_t)t->n_views, sizeof *of, error);
+    uint32_t *const of = adcgs_alloc(NULL, 2 * (size_t)t->views.n, sizeof *of, error);
     memset(share, 0, t->f->n * sizeof *share);
     const adcgs_status status =
-        drawn && of ? add_cameras(t, of, of + t->n_views, drawn, share, error) : adcgs_alloc_status(error);
+        drawn && of ? add_cameras(t, of, of + t->views.n, drawn, share, error) : adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < t->f->n; i++)
         share[i] = drawn[i] > 0 ? share[i] / drawn[i] : -1;
     adcgs_free(NULL, drawn);

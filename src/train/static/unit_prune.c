@@ -345,6 +345,6 @@ adcgs_status adcgs_prune_units(adcgs_trainer *t, adcgs_error *error)
     }
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
         if (t->f->mlp[i].n)
-            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->rounding);
+            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->stage.rounding);
     return status;
 }

@@ -47,8 +47,8 @@ static int has_black_levels(const adcgs_trainer *t)
 
 static int has_retimed(const adcgs_trainer *t)
 {
-    for (uint32_t i = 0; i < t->n_views; i++)
-        if (fabsf(t->views[i].t - adcgs_trainer_time(t, t->scene->views[ADCGS_SPLIT_TRAIN][i].time)) > 0)
+    for (uint32_t i = 0; i < t->views.n; i++)
+        if (fabsf(t->views.list[i].t - adcgs_trainer_time(t, t->scene->views[ADCGS_SPLIT_TRAIN][i].time)) > 0)
             return 1;
     return 0;
 }
@@ -70,7 +70,7 @@ static int applies(const adcgs_trainer *t, int mechanism)
     case ADCGS_RETIMING:
         return has_retimed(t);
     case ADCGS_RESIDUALS:
-        return t->scene->points.n >= ADCGS_POINTS_LEAST && t->n_views >= VIEWS_PER_FRAME * t->scene->n_times;
+        return t->scene->points.n >= ADCGS_POINTS_LEAST && t->views.n >= VIEWS_PER_FRAME * t->scene->n_times;
     case ADCGS_FLOATERS:
         return t->stereo.maps != NULL;
     case ADCGS_STATIC_ANCHORS:
@@ -133,7 +133,7 @@ static adcgs_status judge_view(adcgs_trainer *t, const adcgs_scene_view *v, int 
     adcgs_camera camera;
     adcgs_view view;
     float *taken;
-    ADCGS_TRY(adcgs_scene_image(t->scene, v, t->divide, &taken, &camera, error));
+    ADCGS_TRY(adcgs_scene_image(t->scene, v, t->views.divide, &taken, &camera, error));
     const size_t plane = (size_t)camera.width * (size_t)camera.height;
     float *const image = adcgs_alloc(NULL, 6 * plane, sizeof *image, error);
     adcgs_status status = image ? adcgs_view_init(&view, &camera, t->origin, t->scale, error) : adcgs_alloc_status(error);
@@ -168,13 +168,13 @@ static adcgs_status run_trial(score *out, const adcgs_train_config *config, tria
     adcgs_stereo *const matched = first || !same ? NULL : &r->matched;
     const adcgs_trainer_input input = {.matched = matched, .details = r->details ? &r->details : NULL};
     ADCGS_TRY(adcgs_trainer_create_from(&t, r->scene, config, &input, r->o->cpu, r->o->pool, error));
-    t->picture_memory = r->o->memory;
+    t->views.memory = r->o->memory;
     adcgs_status status = adcgs_trainer_run(t, NULL, NULL, &stopped, error);
     for (int i = 0; i < ADCGS_MECHANISMS; i++)
         out->applies[i] = (uint8_t)applies(t, i);
     out->fits = first ? applies(t, ADCGS_GAINS) : r->base[0].fits;
     memset(out->psnr, 0, sizeof out->psnr);
-    if (t->diverged) /* 0 dB: the run without the mechanism wins unless it diverges, too */
+    if (t->run.diverged) /* 0 dB: the run without the mechanism wins unless it diverges, too */
         status = ADCGS_OK;
     else if (status == ADCGS_OK)
         status = judge(t, out->fits, out, error);

@@ -174,7 +174,7 @@ static void doubled_pictures_are_of_the_time_before(void **state)
     (void)state;
     adcgs_train_view views[MOST];
     const adcgs_scene scene = {.duration = 24.0, .views = {film.views}, .n_views = {24}};
-    adcgs_trainer trainer = {.scene = &scene, .n_views = 24, .views = views, .config.retime_duplicates = 1};
+    adcgs_trainer trainer = {.scene = &scene, .views = {.n = 24, .list = views}, .config.retime_duplicates = 1};
     for (int pictures = 1; pictures <= 3; pictures++) {
         film_twice(pictures, 0.0, 2);
         assert_int_equal(adcgs_retime_duplicates(&trainer, film.thumbnails, &error), ADCGS_OK);

@@ -141,7 +141,7 @@ static void estimated_bits_are_written_bytes(void **state)
     assert_memory_equal(stream.segments[0].shape, t->f->density, sizeof t->f->density);
     estimate[0] = flag_bytes(&stream.segments[0]);
     for (int g = 0; g < ADCGS_GROUPS; g++)
-        estimate[g < ADCGS_GROUP_FG ? 0 : 1 + g - ADCGS_GROUP_FG] += t->mean_bits[g] / 8;
+        estimate[g < ADCGS_GROUP_FG ? 0 : 1 + g - ADCGS_GROUP_FG] += t->rate.mean_bits[g] / 8;
     for (int i = 0; i < ADCGS_LAYERS; i++) {
         const double written = (double)stream.bytes.layer[i] - FRAMING;
         print_message("layer %d: estimated %.0f bytes, written %.0f (%+.2f %%)\n", i, estimate[i], written,
@@ -178,7 +178,7 @@ static void check_reach(const adcgs_trainer *t, int network)
         for (int o = 0; o < m->n_out[l]; o++) {
             assert_true(g[m->b[l] + (size_t)o] != 0);
             for (int j = 0; j < m->in[l]; j++) {
-                const int dead = network == ADCGS_P_E_FV && l == 0 && t->rounding && eta_is_zero(t, j);
+                const int dead = network == ADCGS_P_E_FV && l == 0 && t->stage.rounding && eta_is_zero(t, j);
                 if (dead != (g[m->w[l] + (size_t)(o * m->in[l] + j)] == 0))
                     fail_msg("%s, layer %d: weight %d of output %d has %s gradient", t->f->param[network].name, l, j, o,
                              dead ? "a" : "no");
@@ -201,10 +201,10 @@ static void rate_reaches_every_weight(void **state)
         adcgs_fmodel *f = t->f;
         uint32_t stop = stops[s];
         run(t, stop_at, &stop);
-        const adcgs_pass_mode mode = {.quant = t->rounding ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NOISE,
+        const adcgs_pass_mode mode = {.quant = t->stage.rounding ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NOISE,
                                       .deform = ADCGS_DEFORM_ALL,
                                       .seed = 5};
-        assert_int_equal(t->rounding, s);
+        assert_int_equal(t->stage.rounding, s);
         for (int i = 0; i < ADCGS_P_COUNT; i++)
             memset(f->param[i].g, 0, f->param[i].n * sizeof(float));
         adcgs_pass_forward(t->pass, f, 0.5f, &mode);
@@ -227,7 +227,7 @@ static void rate_reaches_every_weight(void **state)
 static void draw(adcgs_trainer *t, float image[3 * 32 * 32])
 {
     adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){.deform = 1});
-    if (adcgs_raster_forward(t->raster, &t->pass->primitives, &t->views[0].view, scene->background, 0.3f, image, 0, &error))
+    if (adcgs_raster_forward(t->raster, &t->pass->primitives, &t->views.list[0].view, scene->background, 0.3f, image, 0, &error))
         fail_msg("%s", error.text);
 }
 
@@ -246,7 +246,7 @@ static void check_picture(adcgs_trainer *t)
     assert_int_equal(adcgs_splat_create(&splat, &model, t->cpu, NULL, NULL, &error), ADCGS_OK);
     assert_int_equal(adcgs_splat_at(splat, 0.5f, &primitives, &error), ADCGS_OK);
     draw(t, here);
-    if (adcgs_raster_forward(t->raster, &primitives, &t->views[0].view, scene->background, 0.3f, there, 0, &error))
+    if (adcgs_raster_forward(t->raster, &primitives, &t->views.list[0].view, scene->background, 0.3f, there, 0, &error))
         fail_msg("%s", error.text);
     print_message("decoded image against the trainer's: %.1f dB\n", adcgs_psnr(here, there, ADCGS_COUNTOF(here)));
     assert_true(adcgs_psnr(here, there, ADCGS_COUNTOF(here)) > 70);
@@ -268,7 +268,7 @@ static void motion_pays_for_little(void **state)
         const double bits = 7.0 * (double)(t->f->mlp[ADCGS_P_OMEGA].n + t->f->mlp[ADCGS_P_VARPI].n + t->f->mlp[ADCGS_P_TIME].n);
         print_message("loss without motion %g, with motion %g\n", stopped, moved);
         assert_true(stopped > 1.01 * moved);
-        t->lambda = (much ? 20 : 2) * (stopped - 1.01 * moved) / bits * 0x1p23;
+        t->rate.lambda = (much ? 20 : 2) * (stopped - 1.01 * moved) / bits * 0x1p23;
         assert_int_equal(adcgs_test_motion_gain(t, &error), ADCGS_OK);
         for (uint32_t i = 0; i < t->f->n; i++)
             moving += t->f->moving[i] != 0;

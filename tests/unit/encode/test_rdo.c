@@ -37,7 +37,8 @@ static int setup(void **state)
     if (open_scene(state) != 0)
         return -1;
     trainer = make();
-    return adcgs_trainer_run(trainer, stop_at, &stop, &stopped, &error) != ADCGS_OK || trainer->frozen || !trainer->rounding;
+    return adcgs_trainer_run(trainer, stop_at, &stop, &stopped, &error) != ADCGS_OK || trainer->stage.frozen ||
+           !trainer->stage.rounding;
 }
 
 static int teardown(void **state)
@@ -57,9 +58,9 @@ static adcgs_trainer *copy(int frozen)
     assert_int_equal(adcgs_trainer_store(trainer, &b, &error), ADCGS_OK);
     /* Stops at once, so that the views are loaded. */
     assert_int_equal(adcgs_trainer_restore(t, b.data, b.size, &error), ADCGS_OK);
-    stop = t->iteration + (frozen ? 10 : 0);
+    stop = t->run.iteration + (frozen ? 10 : 0);
     assert_int_equal(adcgs_trainer_run(t, stop_at, &stop, &stopped, &error), ADCGS_OK);
-    assert_int_equal(t->frozen, frozen);
+    assert_int_equal(t->stage.frozen, frozen);
     float *h[ADCGS_P_ANCHOR];
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         h[i] = t->f->param[i].v;
@@ -100,8 +101,8 @@ static void levels_are_the_cheapest(void **state)
 /** Replaces the images by the model's render plus noise: the loss then has the curvature of the Gauss-Newton approximation. */
 static void explain_pictures(adcgs_trainer *t)
 {
-    for (uint32_t i = 0; i < t->n_views; i++) {
-        const adcgs_train_view *v = &t->views[i];
+    for (uint32_t i = 0; i < t->views.n; i++) {
+        const adcgs_train_view *v = &t->views.list[i];
         const size_t n = 3 * (size_t)v->view.width * (size_t)v->view.height;
         adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_ALL});
         assert_int_equal(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, scene->background, 0.3f, t->image, 0,
@@ -109,7 +110,7 @@ static void explain_pictures(adcgs_trainer *t)
                          ADCGS_OK);
         for (size_t j = 0; j < n; j++)
             t->taken[j] = t->image[j] + (float)(0.03 * adcgs_random_normal(9, i, j));
-        assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_put(t->views.store, i, t->taken, &error), ADCGS_OK);
     }
 }
 

@@ -26,15 +26,15 @@ static void units_go_twice(void **state)
     config.lambda = 0.02f;
     adcgs_trainer *t = run_to(&config, 1040);
     const size_t before = weights_of(t->f);
-    assert_int_equal(t->units_pruned, 0);
+    assert_int_equal(t->stage.units_pruned, 0);
     go_on(t, 1100);
     const size_t once = weights_of(t->f);
-    assert_int_equal(t->units_pruned, 1);
-    t->lambda = 100;
+    assert_int_equal(t->stage.units_pruned, 1);
+    t->rate.lambda = 100;
     go_on(t, 1250);
     const size_t twice = weights_of(t->f);
     print_message("%zu weights; %zu after the first pruning, %zu after the second\n", before, once, twice);
-    assert_int_equal(t->units_pruned, 2);
+    assert_int_equal(t->stage.units_pruned, 2);
     assert_true(once < before && twice < once);
     adcgs_trainer_free(&t);
 }
@@ -171,14 +171,14 @@ static void units_go_when_bits_are_dear(void **state)
         adcgs_stream stream;
         adcgs_buffer out;
         int units = 0, all = 0;
-        t->lambda = dear ? 1000 : 0;
+        t->rate.lambda = dear ? 1000 : 0;
         assert_int_equal(adcgs_prune_units(t, &error), ADCGS_OK);
         for (int i = ADCGS_P_THETA; i <= ADCGS_P_VARPI; i++, all += 16)
             units += t->f->mlp[i].width;
         print_message("%d of %d units remain\n", units, all);
         assert_true(dear ? units < all / 2 : units > all / 2);
         assert_int_equal(t->f->mlp[ADCGS_P_E_STEPS].width, 16);
-        t->lambda = (double)config.lambda;
+        t->rate.lambda = (double)config.lambda;
         checkpoints_hold_widths(&config, t);
         go_on(t, ITERATIONS);
         adcgs_buffer_init(&out);

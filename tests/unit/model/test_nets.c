@@ -133,14 +133,14 @@ static void lattices_follow_lambda(void **state)
     assert_non_null(before);
     memcpy(before, t->f->param[ADCGS_P_OMEGA].p, t->f->param[ADCGS_P_OMEGA].n * sizeof *before);
     for (int i = 0; i < 3; i++) {
-        t->lambda = (const double[]){1e-4, 1, 100}[i];
+        t->rate.lambda = (const double[]){1e-4, 1, 100}[i];
         assert_int_equal(adcgs_weight_steps_choose(t, &error), ADCGS_OK);
         sum[i] = sum_of_lattices(t->f);
     }
     print_message("sums of exponents: %d, %d, %d\n", sum[0], sum[1], sum[2]);
     assert_true(sum[0] >= sum[1] && sum[1] > sum[2]);
     assert_memory_equal(before, t->f->param[ADCGS_P_OMEGA].p, t->f->param[ADCGS_P_OMEGA].n * sizeof *before);
-    t->lambda = 1;
+    t->rate.lambda = 1;
     assert_int_equal(adcgs_weight_steps_choose(t, &error), ADCGS_OK);
     assert_int_equal(sum_of_lattices(t->f), sum[1]);
     free(before);
@@ -188,7 +188,7 @@ static void no_lattice_about_the_nominal_is_cheaper(void **state)
     const adcgs_train_config config = small_config();
     adcgs_trainer *t = run_to(&config, 169);
     const adcgs_mlp *m = &t->f->mlp[ADCGS_P_THETA];
-    t->lambda = 0.01; /* every loss counts */
+    t->rate.lambda = 0.01; /* every loss counts */
     for (int times = 1; times <= 16; times *= 4) {
         t->f->param[ADCGS_P_THETA].p[m->w[m->hidden]] = 10.0f * (float)times;
         assert_cheapest(t);
@@ -227,7 +227,7 @@ static void lattices_outlive_their_streams(void **state)
     const adcgs_train_config config = small_config();
     adcgs_trainer *t = run_to(&config, 169);
     silence_streams(t->f);
-    t->lambda = 100;
+    t->rate.lambda = 100;
     assert_int_equal(adcgs_weight_steps_choose(t, &error), ADCGS_OK);
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         for (int l = 0; t->f->mlp[i].entropy && t->f->mlp[i].n && l <= t->f->mlp[i].hidden; l++)
@@ -242,7 +242,7 @@ static void silent_values_follow_their_means(void **state)
     adcgs_trainer *t = run_to(&config, 169);
     silence_streams(t->f);
     go_on(t, 185);
-    assert_true(t->rounding && !t->frozen);
+    assert_true(t->stage.rounding && !t->stage.frozen);
     const size_t n = (size_t)adcgs_fmodel_rows(t->f, ADCGS_P_FG) * t->f->groups * 64;
     for (size_t j = 0; j < n; j++) {
         assert_true(adcgs_mean_alone(t->pass->mu[ADCGS_P_FG][j]));

@@ -253,7 +253,7 @@ static void teams_end_as_one(void **state)
         run_team(team, size, &b);
         for (int r = 0; r < size; r++) {
             assert_int_equal(team[r].status, ADCGS_OK);
-            assert_int_equal(team[r].t->iteration, 20);
+            assert_int_equal(team[r].t->run.iteration, 20);
             assert_true(team[r].stopped);
             team[r].stop = UINT32_MAX;
         }

@@ -123,7 +123,7 @@ static void test_frozen_anchors_are_predicted(void **state)
     adcgs_trainer *t = make(&config, &before, pool);
     const uint32_t first = settled(t->f);
     assert_true(first > 0 && first <= before.n);
-    t->unfreeze_tests = UINT8_MAX; /* a run this short leaves large errors, and would unfreeze everything */
+    t->stage.unfreeze_tests = UINT8_MAX; /* a run this short leaves large errors, and would unfreeze everything */
     run_trainer(t, NULL, NULL);
     take_model(&model, t->f);
     assert_true(adcgs_inter_possible(&before, &model, &error));
@@ -193,7 +193,7 @@ static void test_changed_anchors_are_unfrozen(void **state)
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
     assert_int_equal(adcgs_unfreeze_step(t, 0, &error), ADCGS_OK);
     assert_in_range(settled(t->f), 0, before.n * 6 / 10);
-    assert_int_equal(t->unfreeze_tests, 1);
+    assert_int_equal(t->stage.unfreeze_tests, 1);
     const uint32_t left = settled(t->f);
     assert_int_equal(adcgs_unfreeze_step(t, 0, &error), ADCGS_OK); /* the check does not run again at once */
     assert_int_equal(settled(t->f), left);

@@ -77,7 +77,7 @@ static adcgs_trainer *make(const adcgs_train_config *config, adcgs_train_measure
     if (adcgs_trainer_create(&t, scene, config, adcgs_cpu_best(), pool, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     t->quantise = adcgs_encode_quantise_hook;
-    t->measure = measure;
+    t->rate.measure = measure;
     return t;
 }
 
@@ -98,15 +98,15 @@ static void lambda_follows_the_bytes(void **state)
         uint64_t features = much ? 200000 : 10000;
         adcgs_trainer *t = make(&config, pretended_bytes);
         const uint32_t n = t->f->n;
-        t->measure_user = &features;
-        t->mean_bits[0] = 8.0 * (double)features;
+        t->rate.measure_user = &features;
+        t->rate.mean_bits[0] = 8.0 * (double)features;
         t->stats.n = 1000;
-        double last = t->lambda;
+        double last = t->rate.lambda;
         for (int i = 0; i < 40; i++) {
-            t->iteration = (uint32_t)(60 + 10 * i);
+            t->run.iteration = (uint32_t)(60 + 10 * i);
             assert_int_equal(adcgs_rate_control_step(t, 0.3 + 0.01 * i, &error), ADCGS_OK);
-            assert_true(much ? t->lambda >= last : t->lambda <= last);
-            last = t->lambda;
+            assert_true(much ? t->rate.lambda >= last : t->rate.lambda <= last);
+            last = t->rate.lambda;
             t->stats.n = 1000;
         }
         assert_true(much ? last > 20 * (double)t->config.lambda : last < 0.05 * (double)t->config.lambda);
@@ -118,7 +118,7 @@ static void lambda_follows_the_bytes(void **state)
 /** Features of a run at its lambda; *user is the lambda at which they have 50,000 bytes. */
 static adcgs_status bytes_of_lambda(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *e)
 {
-    uint64_t features = (uint64_t)(50000 * pow(t->lambda / *(const double *)user, -0.3));
+    uint64_t features = (uint64_t)(50000 * pow(t->rate.lambda / *(const double *)user, -0.3));
     return pretended_bytes(&features, t, bytes, e);
 }
 
@@ -130,26 +130,26 @@ static void lambda_is_sought(void **state)
         adcgs_trainer *t = make(&config, bytes_of_lambda);
         double right = (double)config.lambda * (large ? 20 : 0.05);
         uint32_t tries = 0;
-        t->measure_user = &right;
-        t->iteration = 77;
+        t->rate.measure_user = &right;
+        t->run.iteration = 77;
         const float begin = t->f->param[ADCGS_P_FV].p[0];
         while (adcgs_rate_is_sought(t)) {
-            assert_true(t->iteration == 77 && t->f->param[ADCGS_P_FV].p[0] == begin);
+            assert_true(t->run.iteration == 77 && t->f->param[ADCGS_P_FV].p[0] == begin);
             assert_int_equal(adcgs_rate_search_step(t, 0.31, &error), ADCGS_OK);
             t->f->param[ADCGS_P_FV].p[0] = 5;
-            t->mean_bits[0] = 8.0 * 50000 * pow(t->lambda / right, -0.3);
-            t->iteration = 150;
+            t->rate.mean_bits[0] = 8.0 * 50000 * pow(t->rate.lambda / right, -0.3);
+            t->run.iteration = 150;
             assert_int_equal(adcgs_rate_search_step(t, 0.59, &error), ADCGS_OK);
-            assert_int_equal(t->iteration, 150);
+            assert_int_equal(t->run.iteration, 150);
             assert_int_equal(adcgs_rate_search_step(t, 0.63, &error), ADCGS_OK);
-            assert_int_equal(t->iteration, 150); /* the loop returns, not the step */
-            if (t->next_lambda > 0)
+            assert_int_equal(t->run.iteration, 150); /* the loop returns, not the step */
+            if (t->rate.next_lambda > 0)
                 assert_int_equal(adcgs_rate_search_return(t, &error), ADCGS_OK);
             tries++;
         }
-        print_message("%u tries: %g times the right lambda\n", tries, t->lambda / right);
-        assert_true(tries > 1 && t->iteration == 150 && t->begin.size == 0);
-        assert_true(fabs(log(t->lambda / right)) < 0.5);
+        print_message("%u tries: %g times the right lambda\n", tries, t->rate.lambda / right);
+        assert_true(tries > 1 && t->run.iteration == 150 && t->rate.begin.size == 0);
+        assert_true(fabs(log(t->rate.lambda / right)) < 0.5);
         adcgs_trainer_free(&t);
     }
     config.time_limit = 1000;
@@ -164,21 +164,21 @@ static void test_missed_quality_is_tried_again(void **state)
     const adcgs_train_config config = config_for(ADCGS_TARGET_PSNR, 30);
     for (int missed = 0; missed < 2; missed++) {
         adcgs_trainer *t = make(&config, pretended_bytes);
-        t->iteration = 77;
+        t->run.iteration = 77;
         assert_int_equal(adcgs_rate_search_step(t, 0.31, &error), ADCGS_OK);
-        t->iteration = 190;
-        t->rate_control.tried = t->lambda;
-        t->rate_control.tries = 1000;
+        t->run.iteration = 190;
+        t->rate.control.tried = t->rate.lambda;
+        t->rate.control.tries = 1000;
         assert_false(adcgs_rate_is_sought(t));
         adcgs_rate_search_end(t, missed ? 0.5 : -0.5);
-        assert_true(t->iteration == 190 && missed == (t->next_lambda > 0));
+        assert_true(t->run.iteration == 190 && missed == (t->rate.next_lambda > 0));
         if (missed)
             assert_int_equal(adcgs_rate_search_return(t, &error), ADCGS_OK);
-        assert_true(t->iteration == (missed ? 77 : 190) && !(t->next_lambda > 0));
-        assert_true(missed ? t->lambda < t->rate_control.tried && adcgs_rate_is_sought(t) : t->begin.size == 0);
-        t->iteration = 190;
+        assert_true(t->run.iteration == (missed ? 77 : 190) && !(t->rate.next_lambda > 0));
+        assert_true(missed ? t->rate.lambda < t->rate.control.tried && adcgs_rate_is_sought(t) : t->rate.begin.size == 0);
+        t->run.iteration = 190;
         adcgs_rate_search_end(t, 0.5);
-        assert_true(!(t->next_lambda > 0) && t->begin.size == 0);
+        assert_true(!(t->rate.next_lambda > 0) && t->rate.begin.size == 0);
         adcgs_trainer_free(&t);
     }
 }
@@ -254,7 +254,7 @@ static adcgs_trainer *run_in_pieces(const adcgs_train_config *config)
         adcgs_buffer middle;
         adcgs_buffer_init(&middle);
         run_trainer(t, stop_at, &stop);
-        assert_int_equal(t->iteration, stop);
+        assert_int_equal(t->run.iteration, stop);
         assert_int_equal(adcgs_trainer_store(t, &middle, &error), ADCGS_OK);
         adcgs_trainer_free(&t);
         t = make(config, real_bytes);
@@ -274,7 +274,7 @@ static void stopping_changes_nothing(void **state)
         config.max_anchors = 300; /* bytes need not meet the target, only be the same */
         adcgs_trainer *through = make(&config, real_bytes), *pieces = run_in_pieces(&config);
         run_trainer(through, NULL, NULL);
-        assert_true(pieces->lambda == through->lambda && final_bytes(pieces) == final_bytes(through));
+        assert_true(pieces->rate.lambda == through->rate.lambda && final_bytes(pieces) == final_bytes(through));
         assert_memory_equal(pieces->f->param[ADCGS_P_FV].p, through->f->param[ADCGS_P_FV].p,
                             pieces->f->param[ADCGS_P_FV].n * sizeof(float));
         adcgs_trainer_free(&through);

@@ -198,8 +198,8 @@ static void test_unchanging_regions_are_static(void **state)
 static void show_dot(adcgs_trainer *t, const float x[3], int scattered)
 {
     static const float colour[3] = {0.9f, 0.6f, 0.3f};
-    for (uint32_t i = 0; i < t->n_views; i++) {
-        const adcgs_view *v = &t->views[i].view;
+    for (uint32_t i = 0; i < t->views.n; i++) {
+        const adcgs_view *v = &t->views.list[i].view;
         const int w = v->width, h = v->height;
         float p[3];
         for (int a = 0; a < 3; a++)
@@ -212,7 +212,7 @@ static void show_dot(adcgs_trainer *t, const float x[3], int scattered)
                 t->taken[c * w * h + j] = t->scene->background[c];
             t->taken[(c * h + y) * w + u] += colour[c];
         }
-        assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_put(t->views.store, i, t->taken, &error), ADCGS_OK);
     }
 }
 
@@ -257,8 +257,8 @@ static void missing_things_are_found(void **state)
     assert_int_equal(adcgs_residual_find(t, places, MOST, &n, &error), ADCGS_OK);
     assert_int_equal(n, 0);
     show_dot(t, x, 0);
-    for (uint32_t i = 0; i < t->n_views; i++)
-        t->views[i].t = (float)i / (float)t->n_views; /* no two views share a timestamp */
+    for (uint32_t i = 0; i < t->views.n; i++)
+        t->views.list[i].t = (float)i / (float)t->views.n; /* no two views share a timestamp */
     assert_int_equal(adcgs_residual_find(t, places, MOST, &n, &error), ADCGS_OK);
     assert_int_equal(n, 0);
     adcgs_trainer_free(&t);

@@ -25,8 +25,8 @@ static void crops_are_parts_of_pictures(void **state)
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
     adcgs_trainer_prepare_networks(t);
     adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){.deform = 1});
-    assert_int_equal(adcgs_view_render(t, &t->views[0].view, 0, whole, 0, &error), ADCGS_OK);
-    adcgs_view crop = t->views[0].view;
+    assert_int_equal(adcgs_view_render(t, &t->views.list[0].view, 0, whole, 0, &error), ADCGS_OK);
+    adcgs_view crop = t->views.list[0].view;
     assert_true(crop.width == SIDE && crop.height == SIDE);
     adcgs_view_crop(&crop, X, Y, W, H);
     assert_int_equal(adcgs_view_render(t, &crop, 0, t->image, 0, &error), ADCGS_OK);
@@ -49,12 +49,12 @@ static void crops_are_parts_of_pictures(void **state)
 /** Multiplies all images by a factor. */
 static void dim(adcgs_trainer *t, float by)
 {
-    for (uint32_t i = 0; i < t->n_views; i++) {
-        const size_t n = 3 * (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
-        assert_int_equal(adcgs_image_store_get(t->pictures, i, t->taken, &error), ADCGS_OK);
+    for (uint32_t i = 0; i < t->views.n; i++) {
+        const size_t n = 3 * (size_t)t->views.list[i].view.width * (size_t)t->views.list[i].view.height;
+        assert_int_equal(adcgs_image_store_get(t->views.store, i, t->taken, &error), ADCGS_OK);
         for (size_t j = 0; j < n; j++)
             t->taken[j] *= by;
-        assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_put(t->views.store, i, t->taken, &error), ADCGS_OK);
     }
 }
 
@@ -68,23 +68,23 @@ static void lambda_follows_contrast(void **state)
     assert_int_equal(adcgs_contrast(t, &contrast, &error), ADCGS_OK);
     assert_true(contrast > 0.05 && contrast < 0.5); /* values in [0,1] deviate by 0.5 at most */
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
-    lambda = t->lambda;
+    lambda = t->rate.lambda;
     assert_float_equal(lambda, (double)config.lambda * contrast / ADCGS_CONTRAST_NOMINAL, 1e-9);
     dim(t, 0.5f);
     assert_int_equal(adcgs_contrast(t, &half, &error), ADCGS_OK);
     assert_float_equal(half, contrast / 2, 1e-4 * contrast);
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK); /* the contrast has been measured and stays */
-    assert_float_equal(t->lambda, lambda, 0);
-    t->contrast = 0;
+    assert_float_equal(t->rate.lambda, lambda, 0);
+    t->rate.contrast = 0;
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
-    assert_float_equal(t->lambda, lambda / 2, 1e-4 * lambda);
+    assert_float_equal(t->rate.lambda, lambda / 2, 1e-4 * lambda);
     dim(t, 0); /* images of one colour: the rate still has a price */
-    t->contrast = 0;
+    t->rate.contrast = 0;
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
-    assert_true(t->lambda > 0);
+    assert_true(t->rate.lambda > 0);
     assert_int_equal(adcgs_train_set_value(&t->config, "lambda", (double)config.lambda, &error), ADCGS_OK);
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
-    assert_float_equal(t->lambda, config.lambda, 0);
+    assert_float_equal(t->rate.lambda, config.lambda, 0);
     adcgs_trainer_free(&t);
 }
 
@@ -94,13 +94,13 @@ static void lambda_follows_contrast(void **state)
  */
 static void darken(adcgs_trainer *t, const float black[3], float last_share)
 {
-    for (uint32_t i = 0; i < t->n_views; i++) {
-        const size_t plane = (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
+    for (uint32_t i = 0; i < t->views.n; i++) {
+        const size_t plane = (size_t)t->views.list[i].view.width * (size_t)t->views.list[i].view.height;
         const uint32_t camera = t->exposure.of[i];
         const float share = camera == 2 ? last_share : 0.5f;
         for (size_t j = 0; j < 3 * plane; j++)
             t->taken[j] = j % plane < share * (float)plane ? (black[camera] + (float)(j % 3) / 2) / 255 : 0.5f;
-        assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_put(t->views.store, i, t->taken, &error), ADCGS_OK);
     }
 }
 
@@ -109,11 +109,11 @@ static void black_levels_are_found(void **state)
 {
     adcgs_train_config config = small_config();
     adcgs_trainer *t = make_trainer(&config, pool);
-    adcgs_scene_view *views = calloc(t->n_views, sizeof *views);
+    adcgs_scene_view *views = calloc(t->views.n, sizeof *views);
     assert_non_null(views);
-    for (uint32_t i = 0; i < t->n_views; i++)
+    for (uint32_t i = 0; i < t->views.n; i++)
         views[i].camera.cam_to_world[3] = i % 3;
-    assert_int_equal(adcgs_exposure_create(&t->exposure, views, t->n_views, 0, &error), ADCGS_OK);
+    assert_int_equal(adcgs_exposure_create(&t->exposure, views, t->views.n, 0, &error), ADCGS_OK);
     free(views);
     assert_int_equal(t->exposure.n, 3);
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
@@ -279,11 +279,11 @@ static void backgrounds_have_no_gain(void **state)
     adcgs_trainer *t;
     assert_int_equal(adcgs_trainer_create(&t, &white, &config, adcgs_cpu_best(), pool, &error), ADCGS_OK);
     assert_ptr_equal(scene, before);
-    adcgs_scene_view *views = calloc(t->n_views, sizeof *views);
+    adcgs_scene_view *views = calloc(t->views.n, sizeof *views);
     assert_non_null(views);
-    for (uint32_t i = 0; i < t->n_views; i++)
+    for (uint32_t i = 0; i < t->views.n; i++)
         views[i].camera.cam_to_world[3] = i % 2;
-    assert_int_equal(adcgs_exposure_create(&t->exposure, views, t->n_views, 0, &error), ADCGS_OK);
+    assert_int_equal(adcgs_exposure_create(&t->exposure, views, t->views.n, 0, &error), ADCGS_OK);
     free(views);
     t->exposure.cameras[0] = (adcgs_exposure_camera){.square = {1, 1, 1}, .gain = {2, 2, 2}};
     t->exposure.cameras[1] = (adcgs_exposure_camera){.square = {1, 1, 1}, .gain = {1, 1, 1}};
@@ -291,11 +291,11 @@ static void backgrounds_have_no_gain(void **state)
     memset(t->f->keep, 0, (size_t)t->f->groups * ADCGS_LANES * t->f->params.k * sizeof *t->f->keep);
     adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){.deform = ADCGS_DEFORM_NONE});
     for (uint32_t i = 0; i < 2; i++) {
-        const size_t values = 3 * (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
+        const size_t values = 3 * (size_t)t->views.list[i].view.width * (size_t)t->views.list[i].view.height;
         for (size_t j = 0; j < values; j++)
             t->taken[j] = 1;
-        assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
-        assert_int_equal(adcgs_view_render(t, &t->views[i].view, i, t->image, 0, &error), ADCGS_OK);
+        assert_int_equal(adcgs_image_store_put(t->views.store, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_view_render(t, &t->views.list[i].view, i, t->image, 0, &error), ADCGS_OK);
         assert_int_equal(adcgs_trainer_target(t, i, NULL, &target, &error), ADCGS_OK);
         for (size_t j = 0; j < values; j++)
             assert_float_equal(t->image[j], target[j], 1e-6);
@@ -348,7 +348,7 @@ static void run_behind_mask(float value, adcgs_buffer *end, double *psnr)
     run(t, NULL, NULL);
     store(t, end);
     assert_int_equal(adcgs_sample_psnr(t, 4, psnr, &error), ADCGS_OK);
-    assert_true(all_finite(t->f) && t->rollbacks == 0);
+    assert_true(all_finite(t->f) && t->run.rollbacks == 0);
     adcgs_trainer_free(&t);
     for (uint32_t i = 0; i < n; i++) {
         unlink(views[i].path);

@@ -189,7 +189,7 @@ static void looks(void **state)
     config.batch = 3;
     assert_int_equal(adcgs_trainer_create(&t, scene, &config, adcgs_cpu_best(), NULL, &error), ADCGS_OK);
     assert_int_equal(adcgs_stages_before(t, 0, &error), ADCGS_OK);
-    t->rounding = 1;
+    t->stage.rounding = 1;
     do {
         atomic_store(&left, tries++);
         status = adcgs_batch_run(t, 0.9, &error);

@@ -26,9 +26,9 @@ static void lost_pictures_are_learnt_anew(void **state)
         int stopped;
         if (adcgs_trainer_run(t, NULL, NULL, &stopped, &error) != ADCGS_OK)
             fail_msg("%s: %s", too_long[i], error.text);
-        assert_true(i < 2 ? t->rollbacks > 0 : t->rollbacks == 0);
+        assert_true(i < 2 ? t->run.rollbacks > 0 : t->run.rollbacks == 0);
         assert_true(!adcgs_trainer_is_lost(t));
-        assert_true(t->contrast > 0 && t->lambda < (double)config.lambda); /* also after a rollback to the start */
+        assert_true(t->rate.contrast > 0 && t->rate.lambda < (double)config.lambda); /* also after a rollback to the start */
         adcgs_trainer_free(&t);
     }
 }
@@ -50,7 +50,7 @@ static void test_zero_rate_changes_nothing(void **state)
     memcpy(before, p->p, p->n * sizeof *before);
     if (adcgs_trainer_run(t, NULL, NULL, &stopped, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
-    assert_int_equal(t->rollbacks, 0);
+    assert_int_equal(t->run.rollbacks, 0);
     for (size_t i = 0; i < p->n; i++)
         assert_float_equal(p->p[i], before[i], 1e-6); /* a mean of equal values may be off by a rounding */
     free(before);
@@ -97,12 +97,12 @@ static void test_contrast_of_known_pixels(void **state)
     (void)state;
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
     for (int known = 2; known >= 0; known--) { /* one in `known` pixels is known, black and white alternately */
-        for (uint32_t i = 0; i < t->n_views; i++) {
-            const size_t plane = (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
+        for (uint32_t i = 0; i < t->views.n; i++) {
+            const size_t plane = (size_t)t->views.list[i].view.width * (size_t)t->views.list[i].view.height;
             for (size_t j = 0; j < plane; j++)
                 for (size_t c = 0; c < 3; c++)
                     t->taken[c * plane + j] = !known || (known == 2 && j % 2) ? (float)NAN : (float)(j / 2 % 2);
-            assert_int_equal(adcgs_image_store_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+            assert_int_equal(adcgs_image_store_put(t->views.store, i, t->taken, &error), ADCGS_OK);
         }
         assert_int_equal(adcgs_contrast(t, &contrast, &error), ADCGS_OK);
         assert_float_equal(contrast, known ? 0.5 : 0, 1e-9);
@@ -133,9 +133,9 @@ static void test_run_ends_in_any_stage(void **state)
         assert_int_equal(adcgs_trainer_store(t, &bytes, &error), ADCGS_OK);
         assert_int_equal(adcgs_trainer_restore(other, bytes.data, bytes.size, &error), ADCGS_OK);
         if (adcgs_trainer_finish(other, &report, &error) != ADCGS_OK)
-            fail_msg("at %u: %s", t->iteration, error.text);
-        assert_true(other->frozen && other->rounding && other->pruned && other->divide == 1);
-        assert_int_equal(report.iteration, t->iteration);
+            fail_msg("at %u: %s", t->run.iteration, error.text);
+        assert_true(other->stage.frozen && other->stage.rounding && other->stage.pruned && other->views.divide == 1);
+        assert_int_equal(report.iteration, t->run.iteration);
         bytes.size = 0;
         assert_int_equal(adcgs_encode_stream(&stream, other, NULL, 0, &error), ADCGS_OK);
         assert_int_equal(adcgs_encode_verified(&stream, &bytes, t->cpu, pool, &error), ADCGS_OK);
@@ -157,7 +157,7 @@ static int spoil(adcgs_trainer *t, int way)
     adcgs_fmodel *f = t->f;
     switch (way) {
     case 0:
-        t->curriculum.n = t->n_views + 1;
+        t->curriculum.n = t->views.n + 1;
         break;
     case 1:
         t->curriculum.last = f->params.time_rows;
@@ -193,19 +193,19 @@ static int spoil(adcgs_trainer *t, int way)
         f->mlp[ADCGS_P_THETA].weight_step[0] = -1;
         break;
     case 12:
-        t->lr_scale = INFINITY;
+        t->run.lr_scale = INFINITY;
         break;
     case 13:
-        t->lambda = NAN;
+        t->rate.lambda = NAN;
         break;
     case 14:
-        t->units_pruned = 3;
+        t->stage.units_pruned = 3;
         break;
     case 15:
-        t->frozen = 1;
+        t->stage.frozen = 1;
         break;
     case 16:
-        t->elapsed.clock = -1;
+        t->run.elapsed.clock = -1;
         break;
     default:
         return 0;

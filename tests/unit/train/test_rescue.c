@@ -39,7 +39,7 @@ static void expect_rescued(adcgs_trainer *failed, uint32_t iteration)
     assert_int_equal(adcgs_trainer_rescue(failed, in("state"), &error), ADCGS_OK);
     if (adcgs_trainer_load(t, in("state"), &error) != ADCGS_OK)
         fail_msg("%s", error.text);
-    assert_int_equal(t->iteration, iteration);
+    assert_int_equal(t->run.iteration, iteration);
     run_to_end(t);
     store(t, &other);
     assert_int_equal(end.size, other.size);
@@ -53,7 +53,7 @@ static int fail_later(void *user, uint32_t done, uint32_t n)
     const adcgs_trainer *const t = user;
     (void)done;
     (void)n;
-    return t->iteration > 0;
+    return t->run.iteration > 0;
 }
 
 /** Images of the next size cannot be loaded. */
@@ -63,11 +63,11 @@ static void loading_fails(void **state)
     adcgs_trainer *t = make_trainer(&config, pool);
     int stopped;
     (void)state;
-    t->loading = fail_later;
-    t->loading_user = t;
+    t->views.loading = fail_later;
+    t->views.loading_user = t;
     assert_int_equal(adcgs_trainer_run(t, NULL, NULL, &stopped, &error), ADCGS_ERR_IO);
-    assert_true(t->iteration > 0 && t->iteration < ITERATIONS);
-    expect_rescued(t, t->iteration);
+    assert_true(t->run.iteration > 0 && t->run.iteration < ITERATIONS);
+    expect_rescued(t, t->run.iteration);
     adcgs_trainer_free(&t);
 }
 
@@ -89,15 +89,15 @@ static void an_image_goes_away(void **state)
     adcgs_trainer *t = make_trainer(&config, pool);
     int stopped;
     (void)state;
-    t->picture_memory = 1;
+    t->views.memory = 1;
     setenv("TMPDIR", in("nowhere"), 1);
     assert_int_equal(adcgs_trainer_run(t, take_away, path, &stopped, &error), ADCGS_ERR_IO);
     assert_non_null(strstr(error.text, path));
     before ? setenv("TMPDIR", before, 1) : unsetenv("TMPDIR");
     free(before);
     assert_int_equal(rename(in("away"), path), 0);
-    assert_true(t->iteration >= 20 && t->iteration < ITERATIONS);
-    expect_rescued(t, t->iteration);
+    assert_true(t->run.iteration >= 20 && t->run.iteration < ITERATIONS);
+    expect_rescued(t, t->run.iteration);
     adcgs_trainer_free(&t);
 }
 
@@ -151,7 +151,7 @@ static void a_change_fails(void **state)
         assert_int_equal(adcgs_trainer_run(t, stop_at, &from, &stopped, &error), ADCGS_OK);
         t->quantise = quantise_nothing;
         assert_int_equal(adcgs_trainer_run(t, NULL, NULL, &stopped, &error), ADCGS_ERR_MEMORY);
-        assert_true(t->iteration > 30);
+        assert_true(t->run.iteration > 30);
         if (from)
             expect_rescued(t, from);
         else {

@@ -90,7 +90,7 @@ static result train_scaled(double factor)
     t->quantise = adcgs_encode_quantise_hook;
     if (adcgs_trainer_run(t, NULL, NULL, &stopped, &error) != ADCGS_OK)
         fail_msg("%g: %s", factor, error.text);
-    r.psnr = adcgs_psnr_from_mse(t->mean_mse);
+    r.psnr = adcgs_psnr_from_mse(t->run.mean_mse);
     r.decoded = decoded_psnr(t, scaled);
     r.near_plane = scaled->views[ADCGS_SPLIT_TRAIN][0].camera.near_plane / factor;
     r.scale = t->scale / factor;

@@ -28,9 +28,9 @@ static void windows_grow_outwards(void **state)
     assert_true(rows >= 6);
     adcgs_curriculum_grow(w, 0.1, t->f);
     const int first = w->first, last = w->last;
-    assert_true(w->n > 0 && w->n < t->n_views && first > 0 && last < rows - 1);
+    assert_true(w->n > 0 && w->n < t->views.n && first > 0 && last < rows - 1);
     for (int i = 0; i < 100; i++) {
-        const float at = t->views[adcgs_curriculum_pick(w, 1, (uint32_t)i)].t * (float)(rows - 1);
+        const float at = t->views.list[adcgs_curriculum_pick(w, 1, (uint32_t)i)].t * (float)(rows - 1);
         assert_true(at >= (float)first && at <= (float)last);
     }
     for (int r = 0; r < rows; r++)
@@ -44,7 +44,7 @@ static void windows_grow_outwards(void **state)
         else
             assert_memory_equal(time_row(t, r), time_row(t, r < first ? first : r > last ? last : r), bytes);
     adcgs_curriculum_grow(w, 1, t->f);
-    assert_true(w->n == t->n_views && w->first == 0 && w->last == rows - 1);
+    assert_true(w->n == t->views.n && w->first == 0 && w->last == rows - 1);
     adcgs_trainer_free(&t);
 }
 
@@ -277,9 +277,9 @@ static void time_limits_count_what_was_before(void **state)
     int stopped;
     config.time_limit = 5;
     adcgs_trainer *t = make_trainer(&config, pool);
-    t->started.clock = adcgs_seconds() - 6;
+    t->run.started.clock = adcgs_seconds() - 6;
     assert_int_equal(adcgs_trainer_run(t, NULL, NULL, &stopped, &error), ADCGS_ERR_USAGE);
-    assert_int_equal(t->iteration, 0);
+    assert_int_equal(t->run.iteration, 0);
     assert_true(strstr(error.text, "time limit of 5 s") && strstr(error.text, "before training began"));
     adcgs_trainer_free(&t);
     /* The remaining time is many times that of a short run, however busy the machine is. */
@@ -293,10 +293,10 @@ static void time_limits_count_what_was_before(void **state)
     config.time_limit = 10000;
     config.iterations = 1000000;
     t = make_trainer(&config, pool);
-    t->started.clock = adcgs_seconds() - (config.time_limit - left);
+    t->run.started.clock = adcgs_seconds() - (config.time_limit - left);
     run(t, NULL, NULL);
-    assert_true(t->iteration > 0 && t->iteration < config.iterations);
-    assert_true(t->elapsed.clock >= config.time_limit && t->elapsed.cpu > 0);
+    assert_true(t->run.iteration > 0 && t->run.iteration < config.iterations);
+    assert_true(t->run.elapsed.clock >= config.time_limit && t->run.elapsed.cpu > 0);
     adcgs_trainer_free(&t);
 }
 

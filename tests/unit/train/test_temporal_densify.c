@@ -171,9 +171,9 @@ static void views_of_other_places_are_no_idleness(void **state)
 {
     const adcgs_train_config config = small_config();
     adcgs_trainer *t = make(&config);
-    t->stats.presence[0] = (float)(t->stats.n = t->n_views - 1);
+    t->stats.presence[0] = (float)(t->stats.n = t->views.n - 1);
     for (int k = 0; k < t->f->params.k; k++)
-        t->stats.opacity[adcgs_fmodel_slot(t->f, 0, k)] = 0.5f * (float)t->n_views;
+        t->stats.opacity[adcgs_fmodel_slot(t->f, 0, k)] = 0.5f * (float)t->views.n;
     assert_false(adcgs_anchor_is_idle(t, 0, 1)); /* the last view may contain it */
     t->stats.presence[0] = (float)++t->stats.n;
     assert_true(adcgs_anchor_is_idle(t, 0, 1)); /* none does */

@@ -11,7 +11,7 @@
 /** Mean squared difference between the image of the first tiers and that of all tiers. */
 static double wrong_with(const adcgs_trainer *t, const adcgs_model *model, int tiers)
 {
-    const adcgs_view *view = &t->views[0].view;
+    const adcgs_view *view = &t->views.list[0].view;
     const size_t n = 3 * (size_t)view->width * (size_t)view->height;
     float *picture[2] = {calloc(n, sizeof(float)), calloc(n, sizeof(float))};
     double sum = 0;
@@ -21,7 +21,7 @@ static double wrong_with(const adcgs_trainer *t, const adcgs_model *model, int t
         adcgs_primitives primitives;
         assert_int_equal(adcgs_model_coarser(&part, model, i ? tiers : model->finest + 1, NULL, &error), ADCGS_OK);
         assert_int_equal(adcgs_splat_create(&splat, &part, t->cpu, NULL, NULL, &error), ADCGS_OK);
-        assert_int_equal(adcgs_splat_at(splat, t->views[0].t, &primitives, &error), ADCGS_OK);
+        assert_int_equal(adcgs_splat_at(splat, t->views.list[0].t, &primitives, &error), ADCGS_OK);
         assert_int_equal(adcgs_raster_forward(t->raster, &primitives, view, t->scene->background, ADCGS_SCREEN_FILTER, picture[i],
                                               0, &error),
                          ADCGS_OK);
@@ -81,7 +81,7 @@ static void restored_runs_go_on_in_lockstep(void **state)
     for (size_t i = 0; i < ADCGS_COUNTOF(stops); i++) {
         uint32_t stop = stops[i];
         run(stopping, stop_at, &stop);
-        assert_int_equal(stopping->iteration, stop);
+        assert_int_equal(stopping->run.iteration, stop);
         store(stopping, &middle);
         adcgs_trainer *restored = make_trainer(&config, pool);
         assert_int_equal(adcgs_trainer_restore(restored, middle.data, middle.size, &error), ADCGS_OK);
@@ -133,7 +133,7 @@ static void checkpoints_name_what_differs(void **state)
     adcgs_trainer *t = make_trainer(&config, NULL);
     for (int later = 0; later < 2; later++) {
         adcgs_buffer b;
-        t->lambda_used = t->rounding = (uint8_t)later;
+        t->rate.lambda_used = t->stage.rounding = (uint8_t)later;
         store(t, &b);
         for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
             uint8_t *field = (uint8_t *)&t->config + s->offset;
@@ -240,9 +240,9 @@ typedef struct poison {
 /** The first view's image with one value replaced. */
 static void put_value(adcgs_trainer *t, float value)
 {
-    assert_int_equal(adcgs_image_store_get(t->pictures, 0, t->taken, &error), ADCGS_OK);
+    assert_int_equal(adcgs_image_store_get(t->views.store, 0, t->taken, &error), ADCGS_OK);
     t->taken[5] = value;
-    assert_int_equal(adcgs_image_store_put(t->pictures, 0, t->taken, &error), ADCGS_OK);
+    assert_int_equal(adcgs_image_store_put(t->views.store, 0, t->taken, &error), ADCGS_OK);
 }
 
 static int give_poison(void *user, const adcgs_train_report *r)
@@ -270,9 +270,9 @@ static void no_number_is_rolled_back(void **state)
         adcgs_model model;
         poison p = {.t = make_trainer(&config, pool), .group = groups[i], .repair = 1, .at = 90};
         run(p.t, give_poison, &p);
-        assert_int_equal(p.t->iteration, ITERATIONS);
-        assert_int_equal(p.t->rollbacks, 1);
-        assert_true(isfinite(p.t->mean_loss) && all_finite(p.t->f));
+        assert_int_equal(p.t->run.iteration, ITERATIONS);
+        assert_int_equal(p.t->run.rollbacks, 1);
+        assert_true(isfinite(p.t->run.mean_loss) && all_finite(p.t->f));
         assert_int_equal(adcgs_quantise(&model, p.t->f, &(adcgs_quantise_options){.cpu = p.t->cpu}, &error), ADCGS_OK);
         assert_int_equal(adcgs_model_validate(&model, &error), ADCGS_OK);
         adcgs_model_clear(&model, NULL);
@@ -287,8 +287,8 @@ static void no_number_is_rolled_back_late(void **state)
     for (uint32_t at = 140; at < ITERATIONS; at += 20) {
         poison p = {.t = make_trainer(&config, pool), .group = ADCGS_P_THETA, .at = at};
         run(p.t, give_poison, &p);
-        assert_int_equal(p.t->iteration, ITERATIONS);
-        assert_true(p.t->rollbacks >= 1 && all_finite(p.t->f));
+        assert_int_equal(p.t->run.iteration, ITERATIONS);
+        assert_true(p.t->run.rollbacks >= 1 && all_finite(p.t->f));
         adcgs_trainer_free(&p.t);
     }
 }
@@ -302,7 +302,7 @@ static void lasting_poison_ends_the_run(void **state)
     assert_int_equal(adcgs_trainer_run(p.t, give_poison, &p, &stopped, &error), ADCGS_ERR_DATA);
     assert_non_null(strstr(error.text, "diverged"));
     assert_null(strchr(error.text, '\n'));
-    assert_true(all_finite(p.t->f) || p.t->rollbacks > 0);
+    assert_true(all_finite(p.t->f) || p.t->run.rollbacks > 0);
     adcgs_trainer_free(&p.t);
 }
 
