@@ -171,7 +171,7 @@ many 2 'without line breaks' "$dir/line
 break" -o "$out" -l 1 --list
 for more in scene '-l 1' --list --resume "-o $dir"; do
     # shellcheck disable=SC2086
-    many 2 '--collect excludes other' --collect "$out" $more
+    many 2 '--collect excludes ' --collect "$out" $more
 done
 many 3 'nowhere/command.txt' --collect "$dir/nowhere"
 printf -- '--lambda\n1' >"$out/command.txt"
