@@ -62,6 +62,12 @@ for list in src/*/Makefile.inc; do
     faults=$((faults + 1))
 done
 
+# The lists name sources that exist; else a build works, since compilers find headers, and the tarball lacks them.
+while IFS=: read -r list file; do
+    [ -f "$file" ] || { echo "$list: $file does not exist" >&2; faults=$((faults + 1)); }
+done < <(grep -oHE '(^| )(src|codec|tests|conformance|examples)/[a-zA-Z0-9_/-]+\.(c|h|cc)\b' Makefile.am $(find codec src tests conformance examples -name Makefile.inc) |
+             tr -d ' ' | sort -u)
+
 # A base name, as in a backtrace or a message, means one file.
 repeated=$(find codec src conformance web tests examples -name '*.[ch]' -o -name '*.cc' | sed 's|.*/||' | sort | uniq -d)
 if [ -n "$repeated" ]; then
