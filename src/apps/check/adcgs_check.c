@@ -16,7 +16,7 @@
 
 #include <stdlib.h>
 
-/* Static points to match. Depths of whole images are matched whatever their number, so more do not help the judgement; chosen by
+/* Static points to match. Whole images are matched for any number of points, so more do not help the judgement; chosen by
  * hand, not measured. */
 #define STATIC_POINTS 1000
 
@@ -28,7 +28,7 @@ typedef struct settings {
     adcgs_progress progress;
 } settings;
 
-/** What was found out about a scene. */
+/** A scene, and the findings on it. */
 typedef struct judgement {
     adcgs_scene *scene;
     adcgs_camera_order order;
@@ -48,10 +48,8 @@ static adcgs_status open_scene(judgement *j, const settings *s, adcgs_error *err
     adcgs_scene_options options = {.dataset = s->dataset};
     if (s->frames)
         ADCGS_TRY(adcgs_frames_parse(&options.frames, s->frames, error));
-    if (s->fps && adcgs_fps_parse(s->fps, &options.rate))
-        return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or 30000/1001", s->fps,
-                          ADCGS_FPS_MIN, ADCGS_FPS_MAX);
+    if (s->fps)
+        ADCGS_TRY(adcgs_fps_read_option(&options.rate, s->fps, error));
     ADCGS_TRY(adcgs_scene_open(&j->scene, s->path, &options, error));
     return adcgs_camera_order_find(&j->order, j->scene->views[ADCGS_SPLIT_TRAIN], j->scene->n_views[ADCGS_SPLIT_TRAIN], error);
 }

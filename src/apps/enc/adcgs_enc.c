@@ -173,11 +173,8 @@ static adcgs_status prepare(adcgs_enc_job *job, adcgs_train_config *requested, a
     ADCGS_TRY(adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &job->cpu, error));
     if (o->frames)
         ADCGS_TRY(adcgs_frames_parse(&scene->frames, o->frames, error));
-    if (o->fps && adcgs_fps_parse(o->fps, &scene->rate))
-        return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
-                          "30000/1001",
-                          o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
+    if (o->fps)
+        ADCGS_TRY(adcgs_fps_read_option(&scene->rate, o->fps, error));
     ADCGS_TRY(adcgs_enc_configure(requested, o, job->cpu, error));
     job->requested = requested;
     job->config = *requested;

@@ -232,6 +232,7 @@ static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
 {
     adcgs_import_options *const o = &a->import;
     adcgs_option_table options = {.n = 0};
+    adcgs_error error;
     int first;
     add_footage_options(&options, a);
     add_camera_options(&options, a);
@@ -246,11 +247,8 @@ static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
     o->n_inputs = argc - first;
     if (!o->output || !*o->output)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "no output: give -o FOLDER");
-    if (a->fps && adcgs_fps_parse(a->fps, &o->fps))
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE,
-                               "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
-                               "30000/1001",
-                               a->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
+    if (a->fps && adcgs_fps_read_option(&o->fps, a->fps, &error) != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
     return -1;
 }
 

@@ -104,3 +104,11 @@ int adcgs_fps_parse(const char *text, adcgs_fps *rate)
     *rate = found;
     return 0;
 }
+
+adcgs_status adcgs_fps_read_option(adcgs_fps *rate, const char *text, adcgs_error *error)
+{
+    if (!adcgs_fps_parse(text, rate))
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or 30000/1001",
+                      text, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
+}

@@ -27,5 +27,7 @@ adcgs_fps adcgs_fps_of(double value);
 adcgs_fps adcgs_fps_divide(adcgs_fps rate, int64_t by);
 /** Parses "30", "29.97", "30000/1001". \return 0, or -1 for other text and for rates outside ADCGS_FPS_MIN to ADCGS_FPS_MAX */
 int adcgs_fps_parse(const char *text, adcgs_fps *rate);
+/** The same for the value of the option --fps; ADCGS_ERR_USAGE. */
+adcgs_status adcgs_fps_read_option(adcgs_fps *rate, const char *text, adcgs_error *error);
 
 #endif
