@@ -49,9 +49,11 @@ static void check_images(adcgs_findings *findings, const adcgs_footage_facts *fa
     const adcgs_thumbnail *const thumbnails = facts->thumbnails;
     adcgs_fault f;
     adcgs_error error;
-    adcgs_fault_duplicates(&f, NULL, views, order, thumbnails);
-    if (f.cameras && is_new(known, ADCGS_FINDING_DUPLICATE))
-        adcgs_find_duplicate(findings, whole, &f, facts->begins);
+    if (!is_known(known, ADCGS_FINDING_DUPLICATE)) {
+        adcgs_fault_duplicates(&f, NULL, views, order, thumbnails);
+        if (f.cameras && is_new(known, ADCGS_FINDING_DUPLICATE))
+            adcgs_find_duplicate(findings, whole, &f, facts->begins);
+    }
     if (!is_known(known, ADCGS_FINDING_COPY) && adcgs_fault_copied(&f, views, order, thumbnails, &error) == ADCGS_OK &&
         f.cameras && is_new(known, ADCGS_FINDING_COPY))
         adcgs_find_copy(findings, whole, &f, facts->begins);

@@ -2,6 +2,8 @@
 /** \file Stages and learning rates. */
 #include "train/schedule.h"
 
+#include "train/stage_table.h"
+
 #include <math.h>
 
 /** Factor of a group's learning rates from the configuration. */
@@ -53,9 +55,9 @@ float adcgs_train_rate(const adcgs_train_config *c, float first, float last, dou
     return progress <= from ? first : first * powf(last / first, (float)((progress - from) / (1 - from)));
 }
 
-float adcgs_train_lambda_from(const adcgs_train_config *c)
+double adcgs_train_lambda_from(const adcgs_train_config *c)
 {
-    return c->without_rate ? 2 : ADCGS_MIN(c->rate_start, c->prune_units_at);
+    return fmin(adcgs_stage_begin(c, ADCGS_STAGE_RATE), adcgs_stage_begin(c, ADCGS_STAGE_PRUNE_UNITS));
 }
 
 int adcgs_train_prunes_units(const adcgs_train_config *c)

@@ -19,7 +19,7 @@ enum { ADCGS_UNITS_AFTER = 1000 };
 /** True if hidden units are pruned at all. */
 int adcgs_train_prunes_units(const adcgs_train_config *config);
 /** Progress from which lambda affects the run; greater than 1: never. */
-float adcgs_train_lambda_from(const adcgs_train_config *config);
+double adcgs_train_lambda_from(const adcgs_train_config *config);
 
 /** Name of the stage at a progress in [0,1], for display and log. */
 const char *adcgs_train_stage(const adcgs_train_config *config, double progress);

@@ -5,6 +5,7 @@
 #include "fmodel/from_model.h"
 #include "fmodel/weight_rate.h"
 #include "train/batch.h"
+#include "train/stage_table.h"
 #include "train/view_pass.h"
 
 #include <math.h>
@@ -49,7 +50,8 @@ static float weight_price(const adcgs_trainer *t, double progress)
 {
     const adcgs_train_config *c = &t->config;
     const int landed = t->stage.frozen && c->target == ADCGS_TARGET_SIZE;
-    return progress >= c->prune_units_at && !c->without_rate && !landed ? c->network_rate * (float)adcgs_cost_of_bit(t) : 0;
+    return adcgs_stage_has_begun(c, ADCGS_STAGE_PRUNE_UNITS, progress) && !landed ? c->network_rate * (float)adcgs_cost_of_bit(t)
+                                                                                  : 0;
 }
 
 /**
