@@ -315,7 +315,7 @@ static int read_file(const adcgs_image_store *pictures, const picture *p, float 
     void *const values = malloc(bytes_of(p));
     const int problem = values ? adcgs_spool_read(&pictures->spool, values, bytes_of(p), p->at) : ENOMEM;
     if (!problem)
-        adcgs_values_widen(rgb, values, p->bytes, values_of(p));
+        adcgs_values_widen(rgb, 1, values, p->bytes, values_of(p));
     free(values);
     return problem;
 }
@@ -326,7 +326,7 @@ adcgs_status adcgs_image_store_get(const adcgs_image_store *pictures, uint32_t v
     if (p->shared)
         adcgs_packed_image_planes(p->shared, rgb);
     else if (p->place == IN_MEMORY)
-        adcgs_values_widen(rgb, p->values, p->bytes, values_of(p));
+        adcgs_values_widen(rgb, 1, p->values, p->bytes, values_of(p));
     else if (p->place == NOWHERE || read_file(pictures, p, rgb))
         ADCGS_TRY(decode_again(pictures, view, rgb, error));
     show_hidden(p, rgb);

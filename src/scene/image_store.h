@@ -63,7 +63,7 @@ typedef struct adcgs_image_store_need {
 } adcgs_image_store_need;
 
 /**
- * The least bytes of all images of a split in memory, of 8 bits where these may suffice and no matter what the limit is. Decodes
+ * The least bytes of all images of a split in memory, of 8 bits where these may suffice, without regard to the limit. Decodes
  * nothing.
  */
 uint64_t adcgs_image_store_least(const adcgs_scene *scene, adcgs_split split, int divide);

@@ -7,6 +7,7 @@
 #include <math.h>
 
 #define FULL 65535.0f /* largest 16-bit value; arithmetic */
+#define FULL_8 255.0f /* largest 8-bit value; arithmetic: x / 255 is 257 x / 65535 */
 #define LEVEL 257     /* step in 16 bits for one level of 8 bits; arithmetic: 65535 / 255 */
 
 static int is_wide(const float *values, size_t n)
@@ -41,14 +42,22 @@ uint8_t adcgs_values_narrow(float *values, size_t n)
     return between ? 2 : 1;
 }
 
-void adcgs_values_widen(float *to, const void *values, uint8_t bytes, size_t n)
+static inline void widen(float *to, size_t step, const void *values, int bytes, size_t n)
 {
     for (size_t i = 0; bytes == 1 && i < n; i++)
-        to[i] = (float)(LEVEL * ((const uint8_t *)values)[i]) / FULL;
+        to[i * step] = (float)((const uint8_t *)values)[i] / FULL_8;
     for (size_t i = 0; bytes == 2 && i < n; i++)
-        to[i] = (float)((const uint16_t *)values)[i] / FULL;
-    if (bytes == 4)
-        memcpy(to, values, n * sizeof *to);
+        to[i * step] = (float)((const uint16_t *)values)[i] / FULL;
+    for (size_t i = 0; bytes == 4 && i < n; i++)
+        to[i * step] = ((const float *)values)[i];
+}
+
+void adcgs_values_widen(float *to, size_t step, const void *values, int bytes, size_t n)
+{
+    if (step == 1) /* each iteration of training does this for an image: the compiler vectorises it */
+        widen(to, 1, values, bytes, n);
+    else
+        widen(to, step, values, bytes, n);
 }
 
 float adcgs_value_round(float value)

@@ -198,13 +198,11 @@ static adcgs_status load_by_rows(wanted *w, const adcgs_packed_image *kept, int 
     return status;
 }
 
-/** Reads a mask. keeps: from the scene's images, or into them. */
-static adcgs_status read_mask(const wanted *w, int keeps, adcgs_image *mask, adcgs_error *error)
+static adcgs_status read_mask(const wanted *w, adcgs_image *mask, adcgs_error *error)
 {
     wanted hides = {w->scene, w->view, 1};
-    const adcgs_packed_image *kept = NULL;
-    if (keeps)
-        ADCGS_TRY(take_kept(&hides, &kept, error));
+    const adcgs_packed_image *kept;
+    ADCGS_TRY(take_kept(&hides, &kept, error));
     if (!kept) {
         adcgs_image_cache_count(w->scene->images);
         return adcgs_view_mask_read(w->view, w->view->mask, mask, error);
@@ -217,14 +215,14 @@ static adcgs_status read_mask(const wanted *w, int keeps, adcgs_image *mask, adc
 }
 
 /** Loads the image as a whole, from a file, a video or splats, with its mask and its lens. */
-static adcgs_status load_whole(wanted *w, const adcgs_packed_image *kept, int keeps, int divide, float **rgb, adcgs_error *error)
+static adcgs_status load_whole(wanted *w, const adcgs_packed_image *kept, int divide, float **rgb, adcgs_error *error)
 {
     const adcgs_scene_view *const view = w->view;
     adcgs_image image, mask = {.data = NULL};
     if (kept)
         ADCGS_TRY(check_size(view, view->path, kept->width, kept->height, error));
     ADCGS_TRY(kept ? copy_kept(&image, kept, view->path, error) : decode_whole(w->scene, view, &image, error));
-    adcgs_status status = view->mask ? read_mask(w, keeps, &mask, error) : ADCGS_OK;
+    adcgs_status status = view->mask ? read_mask(w, &mask, error) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = adcgs_image_shape(w->scene, view, view->mask ? &mask : NULL, divide, &image, error);
     if (status == ADCGS_OK && !(*rgb = adcgs_image_planes(&image)))
@@ -239,22 +237,19 @@ static int has_stops(const adcgs_scene_view *view)
     return view->stops[0] != 0.0f || view->stops[1] != 0.0f || view->stops[2] != 0.0f;
 }
 
-/** keeps: from the scene's images, or into them. */
-static adcgs_status load(const adcgs_scene *scene, const adcgs_scene_view *view, int keeps, int divide, float **rgb,
-                         adcgs_camera *camera, adcgs_error *error)
+adcgs_status adcgs_scene_image(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
+                               adcgs_camera *camera, adcgs_error *error)
 {
     wanted w = {scene, view, 0};
     adcgs_camera seen = view->camera;
-    const adcgs_packed_image *kept = NULL;
+    const adcgs_packed_image *kept;
     *rgb = NULL;
     if (divide < 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
     adcgs_camera_divide(&seen, divide);
-    if (keeps)
-        ADCGS_TRY(take_kept(&w, &kept, error));
+    ADCGS_TRY(take_kept(&w, &kept, error));
     const int by_rows = !scene->splats && (kept || !view->is_video) && !view->mask && view->lens.width <= 0;
-    const adcgs_status status =
-        by_rows ? load_by_rows(&w, kept, divide, rgb, error) : load_whole(&w, kept, keeps, divide, rgb, error);
+    const adcgs_status status = by_rows ? load_by_rows(&w, kept, divide, rgb, error) : load_whole(&w, kept, divide, rgb, error);
     give_kept(scene, kept);
     ADCGS_TRY(status);
     if (has_stops(view))
@@ -262,18 +257,6 @@ static adcgs_status load(const adcgs_scene *scene, const adcgs_scene_view *view,
     if (camera)
         *camera = seen;
     return ADCGS_OK;
-}
-
-adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
-                              adcgs_camera *camera, adcgs_error *error)
-{
-    return load(scene, view, 0, divide, rgb, camera, error);
-}
-
-adcgs_status adcgs_scene_image(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
-                               adcgs_camera *camera, adcgs_error *error)
-{
-    return load(scene, view, 1, divide, rgb, camera, error);
 }
 
 adcgs_status adcgs_scene_borrow(const adcgs_scene *scene, const adcgs_scene_view *view, int divide,

@@ -4,6 +4,8 @@
 
 #include "scene/packed_image.h"
 
+#include "scene/image_values.h"
+
 #include <stdlib.h>
 #include <sys/mman.h>
 
@@ -43,17 +45,6 @@ static int pack(void *to, int bytes, const float *from, size_t n, size_t step)
     for (size_t i = 0; bytes == 4 && i < n; i++)
         ((float *)to)[i] = from[i * step];
     return !lost;
-}
-
-/** The inverse of pack(): puts n samples `step` apart. */
-static void unpack(float *to, size_t step, const void *from, int bytes, size_t n)
-{
-    for (size_t i = 0; bytes == 1 && i < n; i++)
-        to[i * step] = (float)((const uint8_t *)from)[i] / FULL_8;
-    for (size_t i = 0; bytes == 2 && i < n; i++)
-        to[i * step] = (float)((const uint16_t *)from)[i] / FULL_16;
-    for (size_t i = 0; bytes == 4 && i < n; i++)
-        to[i * step] = ((const float *)from)[i];
 }
 
 /* ---- Images ---- */
@@ -120,7 +111,7 @@ static adcgs_status widen(adcgs_packed_image *packed, const char *path, adcgs_er
     wide.data = get_memory(adcgs_packed_image_size(&wide));
     for (int c = 0; row && wide.data && c < packed->channels; c++)
         for (int y = 0; y < packed->rows; y++) {
-            unpack(row, 1, row_of(packed, c, y), packed->bytes, (size_t)packed->width);
+            adcgs_values_widen(row, 1, row_of(packed, c, y), packed->bytes, (size_t)packed->width);
             pack(row_of(&wide, c, y), wide.bytes, row, (size_t)packed->width, 1);
         }
     free(row);
@@ -154,10 +145,10 @@ void adcgs_packed_image_rows(const adcgs_packed_image *packed, int y, int n, flo
     const size_t width = (size_t)packed->width, channels = (size_t)packed->channels;
     for (int i = 0; i < n; i++, to += width * channels)
         for (int c = 0; c < packed->channels; c++)
-            unpack(to + c, channels, row_of(packed, c, y + i), packed->bytes, width);
+            adcgs_values_widen(to + c, channels, row_of(packed, c, y + i), packed->bytes, width);
 }
 
 void adcgs_packed_image_planes(const adcgs_packed_image *packed, float *to)
 {
-    unpack(to, 1, packed->data, packed->bytes, plane_of(packed) * (size_t)packed->channels);
+    adcgs_values_widen(to, 1, packed->data, packed->bytes, plane_of(packed) * (size_t)packed->channels);
 }

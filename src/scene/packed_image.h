@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * The samples of an image in the fewest bytes that lose nothing: 8 or 16 bits if each sample is a multiple of 1/255 or 1/65535,
- * else binary32. What is taken out equals what was put in, to the bit.
+ * else binary32. Samples come back equal to the bit.
  */
 #ifndef ADCGS_SCENE_PACKED_IMAGE_H
 #define ADCGS_SCENE_PACKED_IMAGE_H

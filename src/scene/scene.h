@@ -112,12 +112,7 @@ adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
  * adcgs_trainer_loss()).
  * camera, if not NULL, becomes the camera at that size. The caller frees *rgb with free(). Any thread may call. For a video,
  * one thread should ask for frames in ascending order (adcgs_view_runs_make()).
- */
-adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
-                              adcgs_camera *camera, adcgs_error *error);
-/**
- * As adcgs_scene_load(), to the same values, from a decoded image that the scene keeps. If there is room for it in scene->images,
- * it is kept for the next call. All rooms above this one call this function.
+ * The decoded image comes from scene->images, or is kept there if there is room, for the next call; the values are the same.
  */
 adcgs_status adcgs_scene_image(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                                adcgs_camera *camera, adcgs_error *error);

@@ -78,7 +78,7 @@ static adcgs_status measure_view(double *psnr, const adcgs_splat_scene *splats, 
     const size_t plane = (size_t)picture.width * (size_t)picture.height;
     uint8_t *const levels = malloc(3 * plane);
     float *const planar = malloc(3 * plane * sizeof *planar);
-    adcgs_status status = levels && planar ? adcgs_scene_load(scene, view, 1, &truth, NULL, error)
+    adcgs_status status = levels && planar ? adcgs_scene_image(scene, view, 1, &truth, NULL, error)
                                            : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
     if (status == ADCGS_OK) {
         adcgs_image_to_u8(picture.data, 3 * plane, levels);
@@ -155,7 +155,7 @@ static adcgs_status write_picture(const adcgs_scene *scene, const adcgs_scene_vi
 {
     float *planar;
     adcgs_image picture;
-    ADCGS_TRY(adcgs_scene_load(scene, view, 1, &planar, NULL, error));
+    ADCGS_TRY(adcgs_scene_image(scene, view, 1, &planar, NULL, error));
     adcgs_status status = adcgs_image_alloc(&picture, view->camera.width, view->camera.height, 3, path, error);
     if (status == ADCGS_OK) {
         const size_t plane = (size_t)picture.width * (size_t)picture.height;

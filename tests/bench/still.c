@@ -77,7 +77,7 @@ static adcgs_status add_camera(still *s, const uint32_t *view, uint32_t n, adcgs
     adcgs_status status = ADCGS_OK;
     for (uint32_t i = 0; status == ADCGS_OK && i < n; i++) {
         float *rgb = NULL;
-        status = adcgs_scene_load(s->scene, &v[view[i]], 1, &rgb, NULL, error);
+        status = adcgs_scene_image(s->scene, &v[view[i]], 1, &rgb, NULL, error);
         if (status == ADCGS_OK)
             adcgs_temporal_look(temporal, rgb);
         free(rgb);

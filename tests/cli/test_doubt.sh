@@ -6,9 +6,9 @@ set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-demo-scene
 
-# learn NAME OPTIONS...: encode a scene made with these options of adcgs-demo-scene; the messages go to $dir/NAME.err. Trained at
-# full size, so short a run tells views with a wrong pose from others.
-learn()
+# encode NAME OPTIONS...: encode a scene made with these options of adcgs-demo-scene; the messages go to $dir/NAME.err. At full size
+# such a short run separates views with a wrong pose from others.
+encode()
 {
     name=$1
     shift
@@ -19,9 +19,9 @@ learn()
 }
 doubts='median camera .*check its pose\|check poses, axes\|are unreliable\|disagrees\|check whether'
 
-learn right
+encode right
 grep "$doubts" "$dir/right.err" && bad "doubts of a scene that is in order"
-learn pose --spoil wrongpose=30
+encode pose --spoil wrongpose=30
 # The camera in the middle of the arc has view r_002; it sees every third time step, and r_002 is the first of them.
 grep -q "the camera of view r_002 has .* dB, the median camera .*check its pose" "$dir/pose.err" ||
     { bad "no warning of a wrong pose"; cat "$dir/pose.err"; }
@@ -32,21 +32,21 @@ grep -q "train/r_002.ppm: its camera disagrees with the others by .* pixels (rot
 ./adcgs-enc "$dir/pose" -o "$dir/parts.adcgs" --preset draft --max-anchors 60 -n 10 --segment 0.25 --threads 1 >"$dir/out" 2>"$dir/err" ||
     bad "adcgs-enc in segments"
 [ "$(grep -c "r_002.ppm: its camera disagrees" "$dir/err")" -eq 1 ] || { bad "not once for a scene in parts"; cat "$dir/err"; }
-learn axes --spoil axes=1
+encode axes --spoil axes=1
 grep -q "training views have .* dB, others .*check poses, axes and times" "$dir/axes.err" || { bad "nothing of wrong axes"; cat "$dir/axes.err"; }
 grep -q "the cameras' images contradict each other, but not if y and z of all cameras are flipped" "$dir/axes.err" ||
     { bad "no warning of wrong axes before training"; cat "$dir/axes.err"; }
 iterations=10
-learn inverse --spoil axes=2
+encode inverse --spoil axes=2
 grep -q "but not if all poses are inverted: check whether matrices map world to camera" "$dir/inverse.err" ||
     { bad "no warning of inverted poses"; cat "$dir/inverse.err"; }
 # Warnings that neither matching nor training influences.
 iterations=60 more="--set matching_frames=0"
-learn few --cameras 2
+encode few --cameras 2
 grep -q "filmed by 2 cameras: other viewpoints are unreliable" "$dir/few.err" || { bad "nothing of few cameras"; cat "$dir/few.err"; }
-learn four --cameras 4 --frames 48 # more views than are measured; cameras take turns
+encode four --cameras 4 --frames 48 # more views than are measured; cameras take turns
 grep "filmed by" "$dir/four.err" && bad "four cameras are not seen"
 iterations= more=-q
-learn quiet --spoil wrongpose=30
+encode quiet --spoil wrongpose=30
 [ ! -s "$dir/quiet.err" ] || { bad "--quiet prints messages"; cat "$dir/quiet.err"; }
 [ $failed -eq 0 ]

@@ -265,7 +265,7 @@ static void test_large(void **state)
                                 "\"transform_matrix\":[[1,0,0,1],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]}");
     assert_int_equal(adcgs_scene_open(&scene, in("transforms.json"), NULL, &error), ADCGS_OK);
     const long before = peak_kib();
-    assert_int_equal(adcgs_scene_load(scene, &scene->views[0][0], 8, &rgb, &camera, &error), ADCGS_OK);
+    assert_int_equal(adcgs_scene_image(scene, &scene->views[0][0], 8, &rgb, &camera, &error), ADCGS_OK);
     assert_true(peak_kib() - before < 48 << 10);
     assert_true(camera.width == SIDE / 8 && camera.height == SIDE / 8);
     for (int i = 0; i < 3 * SIDE / 8 * SIDE / 8; i += 7)

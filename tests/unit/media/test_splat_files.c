@@ -343,7 +343,7 @@ static void test_scenes(void **state)
                 s.scale[a][i] *= 0.02f;
         expect_good(write_splats(&s, in("a.ply")));
         expect_good(adcgs_scene_open(&scene, in("a.ply"), NULL, &error));
-        expect_good(adcgs_scene_load(scene, &scene->views[0][0], 1, &rgb, NULL, &error));
+        expect_good(adcgs_scene_image(scene, &scene->views[0][0], 1, &rgb, NULL, &error));
         for (size_t i = 0; i < 3 * 400 * 400; i++)
             sums[is] += (double)rgb[i];
         free(rgb);

@@ -281,7 +281,7 @@ typedef struct load_job {
 static int good_view(const load_job *job, uint32_t view)
 {
     float *rgb;
-    if (adcgs_scene_load(&job->scene, &views[view], 1, &rgb, NULL, NULL) != ADCGS_OK)
+    if (adcgs_scene_image(&job->scene, &views[view], 1, &rgb, NULL, NULL) != ADCGS_OK)
         return 0;
     double green = 0;
     for (int i = 0; i < 1024; i++)
@@ -338,7 +338,7 @@ static void test_kept_frames(void **state)
             float *got, *want;
             const size_t side = (size_t)((32 + divide - 1) / divide);
             expect_good(adcgs_scene_image(&scene, &views[i], divide, &got, NULL, &error));
-            expect_good(adcgs_scene_load(&direct, &views[i], divide, &want, NULL, &error));
+            expect_good(adcgs_scene_image(&direct, &views[i], divide, &want, NULL, &error));
             assert_memory_equal(got, want, 3 * side * side * sizeof *got);
             free(got);
             free(want);

@@ -40,7 +40,7 @@ static double inconsistency(void)
     double within = 0.0, sum = 0.0, square = 0.0, n = 0.0;
     float *red[VIEWS];
     for (uint32_t v = 0; v < VIEWS; v++)
-        expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TRAIN][STEP * v], 1, &red[v], NULL, &error));
+        expect_good(adcgs_scene_image(scene, &scene->views[ADCGS_SPLIT_TRAIN][STEP * v], 1, &red[v], NULL, &error));
     for (uint32_t i = 0; i < scene->points.n; i++) {
         double s = 0.0, q = 0.0, k = 0.0;
         size_t pixel;
@@ -109,7 +109,7 @@ static void test_hand(void **state)
     assert_true(scene->duration == 85.0 / 30.0); /* 86 images, test images among them */
     assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][10].time - scene->duration * 84.0 / 85.0) < 1e-12);
     float *rgb;
-    expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TEST][10], 1, &rgb, NULL, &error));
+    expect_good(adcgs_scene_image(scene, &scene->views[ADCGS_SPLIT_TEST][10], 1, &rgb, NULL, &error));
     free(rgb);
     json_decref(published);
     json_decref(coordinates);

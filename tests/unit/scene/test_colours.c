@@ -105,7 +105,7 @@ static int close_scene(void **state)
 static float *load_view(uint32_t view)
 {
     float *rgb;
-    expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TRAIN][view], 1, &rgb, NULL, &error));
+    expect_good(adcgs_scene_image(scene, &scene->views[ADCGS_SPLIT_TRAIN][view], 1, &rgb, NULL, &error));
     return rgb;
 }
 

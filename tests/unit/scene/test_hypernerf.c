@@ -30,7 +30,7 @@ static void test_fields(void **state)
     const double points[2][3] = {{0.0, 1.0, 2.0}, {-1.0, 0.0, 0.75}};
     assert_memory_equal(scene->points.position, points, sizeof points);
     float *rgb;
-    expect_good(adcgs_scene_load(scene, b, 1, &rgb, NULL, &error));
+    expect_good(adcgs_scene_image(scene, b, 1, &rgb, NULL, &error));
     free(rgb);
     adcgs_scene_free(&scene);
     const adcgs_scene_options options = {.rate = {10, 1}, .points_path = in("other.npy")};
@@ -72,7 +72,7 @@ static void test_reduced(void **state)
     const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
     assert_true(c->width == 6 && c->height == 4 && c->fx == 8.0 / 3.0 && c->fy == 8.0 / 3.0 && c->cx == 3.0 && c->cy == 2.0);
     float *rgb;
-    expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TEST][0], 1, &rgb, NULL, &error));
+    expect_good(adcgs_scene_image(scene, &scene->views[ADCGS_SPLIT_TEST][0], 1, &rgb, NULL, &error));
     free(rgb);
     adcgs_scene_free(&scene);
     put_text("camera/b.json", "{" PLAIN ",\"focal_length\":8,\"principal_point\":[9,6],\"image_size\":[17,15]}");
@@ -293,7 +293,7 @@ static void test_masks(void **state)
     open_good();
     const adcgs_scene_view *a = &scene->views[ADCGS_SPLIT_TRAIN][0], *c = &scene->views[ADCGS_SPLIT_TRAIN][1];
     assert_true(a->mask && strstr(a->mask, "mask/1x/a.png") && scene->views[ADCGS_SPLIT_TEST][0].mask && !c->mask);
-    expect_good(adcgs_scene_load(scene, a, 1, &rgb, NULL, &error));
+    expect_good(adcgs_scene_image(scene, a, 1, &rgb, NULL, &error));
     for (int i = 0; i < 3 * 6 * 4; i++)
         assert_int_equal(isnan(rgb[i]), i % 6 < 2);
     free(rgb);

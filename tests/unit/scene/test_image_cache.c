@@ -124,7 +124,7 @@ static int is_same(const adcgs_scene_view *view, int divide)
     adcgs_camera camera, expected;
     adcgs_scene direct = scene;
     direct.images = NULL;
-    if (adcgs_scene_load(&direct, view, divide, &want, &expected, NULL) != ADCGS_OK)
+    if (adcgs_scene_image(&direct, view, divide, &want, &expected, NULL) != ADCGS_OK)
         return 0;
     int same = adcgs_scene_image(&scene, view, divide, &got, &camera, NULL) == ADCGS_OK;
     same = same && !memcmp(&camera, &expected, sizeof camera) &&
@@ -228,7 +228,7 @@ static void test_failure(void **state)
     end();
 }
 
-/** Expects a store to hold what it holds without the scene's images. */
+/** Expects a store to hold the same images as without the scene's kept ones. */
 static void expect_same_store(const adcgs_image_store *got, int divide)
 {
     static float a[3 * W * H], b[3 * W * H];

@@ -69,7 +69,7 @@ static void test_budgets(void **state)
             adcgs_camera camera;
             adcgs_image_store_prefetch(pictures, view);
             assert_int_equal(adcgs_image_store_get(pictures, view, got, &error), ADCGS_OK);
-            assert_int_equal(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TRAIN][view], 1, &want, &camera, &error),
+            assert_int_equal(adcgs_scene_image(scene, &scene->views[ADCGS_SPLIT_TRAIN][view], 1, &want, &camera, &error),
                              ADCGS_OK);
             assert_memory_equal(got, want, sizeof got); /* 8 bits and binary32 pass unchanged */
             assert_memory_equal(&camera, adcgs_image_store_camera(pictures, view), sizeof camera);
@@ -90,7 +90,7 @@ static void test_reduced(void **state)
         assert_int_equal(adcgs_image_store_get(held, view, a, &error), ADCGS_OK);
         assert_int_equal(adcgs_image_store_get(filed, view, b, &error), ADCGS_OK);
         assert_memory_equal(a, b, sizeof a);
-        assert_int_equal(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TRAIN][view], 2, &want, NULL, &error), ADCGS_OK);
+        assert_int_equal(adcgs_scene_image(scene, &scene->views[ADCGS_SPLIT_TRAIN][view], 2, &want, NULL, &error), ADCGS_OK);
         for (size_t i = 0; i < ADCGS_COUNTOF(a); i++)
             assert_true(fabsf(a[i] - want[i]) <= 0.51f / 65535.0f);
         free(want);

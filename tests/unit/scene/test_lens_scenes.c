@@ -55,7 +55,7 @@ static void check_reduced(const adcgs_scene_view *view, const float *whole, cons
         float *rgb;
         double squares = 0;
         int n = 0;
-        expect_good(adcgs_scene_load(scene, view, by, &rgb, &small, &error));
+        expect_good(adcgs_scene_image(scene, view, by, &rgb, &small, &error));
         assert_true(small.width == (c->width + by - 1) / by && small.fx == c->fx / by && small.cy == c->cy / by);
         for (int i = 0; i < 3 * small.width * small.height; i++) {
             const int x = i % small.width * by, y = i / small.width % small.height * by, p = i / small.width / small.height;
@@ -78,7 +78,7 @@ static void check_view(const adcgs_scene_view *view, const adcgs_lens *lens)
     float *rgb;
     adcgs_camera c, small;
     assert_memory_equal(&view->lens, lens, sizeof *lens);
-    expect_good(adcgs_scene_load(scene, view, 1, &rgb, &c, &error));
+    expect_good(adcgs_scene_image(scene, view, 1, &rgb, &c, &error));
     assert_true(c.width == view->camera.width && c.height == view->camera.height && c.fx == lens->fx && c.fy == lens->fy);
     assert_true(c.width != lens->width || c.height != lens->height || c.cx != lens->cx || c.cy != lens->cy);
     for (int i = 0; i < 3 * c.width * c.height; i++) {
@@ -90,7 +90,7 @@ static void check_view(const adcgs_scene_view *view, const adcgs_lens *lens)
     check_reduced(view, rgb, &c);
     const double first = ((double)rgb[0] + (double)rgb[1] + (double)rgb[c.width] + (double)rgb[c.width + 1]) / 4;
     free(rgb);
-    expect_good(adcgs_scene_load(scene, view, 2, &rgb, &small, &error)); /* undistorted before it is reduced */
+    expect_good(adcgs_scene_image(scene, view, 2, &rgb, &small, &error)); /* undistorted before it is reduced */
     assert_true(small.width == (c.width + 1) / 2 && small.cx == c.cx / 2 && fabs((double)rgb[0] - first) < 1e-6);
     free(rgb);
 }

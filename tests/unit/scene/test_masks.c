@@ -65,7 +65,7 @@ static int hidden_columns(void)
     float *rgb;
     int n = 0;
     expect_good(reopen());
-    expect_good(adcgs_scene_load(scene, scene->views[ADCGS_SPLIT_TRAIN], 1, &rgb, NULL, &error));
+    expect_good(adcgs_scene_image(scene, scene->views[ADCGS_SPLIT_TRAIN], 1, &rgb, NULL, &error));
     while (n < W && isnan(rgb[n]))
         n++;
     for (int i = 0; i < 3 * W * H; i++)

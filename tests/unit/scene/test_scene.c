@@ -134,11 +134,11 @@ static void test_mask(void **state)
         expect_good(open_single(json));
         const adcgs_scene_view *view = scene->views[ADCGS_SPLIT_TRAIN];
         assert_true(view[0].mask && !view[1].mask && !scene->views[ADCGS_SPLIT_TEST][0].mask);
-        expect_good(adcgs_scene_load(scene, view, 1, &rgb, NULL, &error));
+        expect_good(adcgs_scene_image(scene, view, 1, &rgb, NULL, &error));
         for (int i = 0; i < 3 * 24; i++)
             assert_true(i % 6 < 3 && i % 24 != 8 ? rgb[i] == (float)(3 * (i % 24) + i / 24) / 255.0f : isnan(rgb[i]));
         free(rgb);
-        expect_good(adcgs_scene_load(scene, view, 2, &rgb, &camera, &error));
+        expect_good(adcgs_scene_image(scene, view, 2, &rgb, &camera, &error));
         assert_true(camera.width == 3 && camera.height == 2);
         for (int c = 0; c < 3; c++) {
             const float *plane = rgb + 6 * c;
@@ -187,7 +187,7 @@ static void test_moving(void **state)
     for (int i = 0; i < 6 * 4; i++)
         assert_int_equal(moving[i], i % 5 == 0);
     free(moving);
-    expect_good(adcgs_scene_load(scene, view, 1, &rgb, NULL, &error));
+    expect_good(adcgs_scene_image(scene, view, 1, &rgb, NULL, &error));
     for (int i = 0; i < 3 * 24; i++)
         assert_false(isnan(rgb[i]));
     free(rgb);
@@ -211,7 +211,7 @@ static void test_load(void **state)
     const adcgs_scene_view *view = &scene->views[ADCGS_SPLIT_TRAIN][0];
     float *rgb;
     adcgs_camera camera;
-    expect_good(adcgs_scene_load(scene, view, 1, &rgb, &camera, &error));
+    expect_good(adcgs_scene_image(scene, view, 1, &rgb, &camera, &error));
     assert_true(camera.width == 6 && camera.height == 4 && camera.fx == 5.0);
     assert_true(rgb[0] == 1.0f && rgb[24] == 1.0f); /* transparent: white */
     assert_true(rgb[3] == 12.0f / 255.0f && rgb[24 + 3] == 13.0f / 255.0f && rgb[48 + 3] == 14.0f / 255.0f); /* opaque */
@@ -221,15 +221,15 @@ static void test_load(void **state)
             for (int x = 3; x < 6; x++)
                 small[c] += rgb[c * 24 + y * 6 + x] / 3.0f;
     free(rgb);
-    expect_good(adcgs_scene_load(scene, view, 3, &rgb, &camera, &error));
+    expect_good(adcgs_scene_image(scene, view, 3, &rgb, &camera, &error));
     assert_true(camera.width == 2 && camera.height == 2 && fabs(camera.fx - 5.0 / 3.0) < 1e-12 && camera.cx == 1.0);
     for (int c = 0; c < 3; c++)
         assert_true(fabsf(rgb[4 * c + 3] - small[c]) < 1e-6f); /* the last box covers one row */
     free(rgb);
-    expect_error(adcgs_scene_load(scene, view, 0, &rgb, NULL, &error), ADCGS_ERR_USAGE, "c.tif", "0");
+    expect_error(adcgs_scene_image(scene, view, 0, &rgb, NULL, &error), ADCGS_ERR_USAGE, "c.tif", "0");
     adcgs_scene_view wrong = *view;
     wrong.camera.width = 7;
-    expect_error(adcgs_scene_load(scene, &wrong, 1, &rgb, NULL, &error), ADCGS_ERR_DATA, "6x4", "7x4");
+    expect_error(adcgs_scene_image(scene, &wrong, 1, &rgb, NULL, &error), ADCGS_ERR_DATA, "6x4", "7x4");
     assert_null(rgb);
     adcgs_scene_free(&scene);
 }
@@ -267,7 +267,7 @@ static void check_real(const char *name, uint32_t train, uint32_t val, uint32_t 
     assert_int_equal(scene->n_times, times);
     float *rgb;
     adcgs_camera camera;
-    expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TEST][test - 1], 1, &rgb, &camera, &error));
+    expect_good(adcgs_scene_image(scene, &scene->views[ADCGS_SPLIT_TEST][test - 1], 1, &rgb, &camera, &error));
     assert_true(camera.width == size && camera.height == size);
     free(rgb);
 }

@@ -163,7 +163,7 @@ static void same_picture(const adcgs_scene *scene, const adcgs_scene_view *view,
     adcgs_camera camera;
     float *rgb;
     double variance;
-    expect_good(adcgs_scene_load(scene, view, 1, &rgb, &camera, &error));
+    expect_good(adcgs_scene_image(scene, view, 1, &rgb, &camera, &error));
     float *expected = draw(p, origin, scale, &camera);
     const double db = psnr(rgb, expected, 3 * (size_t)camera.width * (size_t)camera.height, &variance);
     if (!(db > 60.0 && variance > 1e-4))
@@ -282,8 +282,8 @@ static void test_scene(void **state)
     put_text("p.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                       "end_header\n1 2 3\n");
     expect_good(adcgs_scene_open(&scene, in("s.ply"), &white, &error));
-    expect_good(adcgs_scene_load(scene, &scene->views[0][0], 1, &rgb, NULL, &error));
-    expect_good(adcgs_scene_load(scene, &scene->views[0][0], 2, &half, &camera, &error));
+    expect_good(adcgs_scene_image(scene, &scene->views[0][0], 1, &rgb, NULL, &error));
+    expect_good(adcgs_scene_image(scene, &scene->views[0][0], 2, &half, &camera, &error));
     assert_true(camera.width == 200 && camera.fx == 0.5 * scene->views[0][0].camera.fx);
     assert_true(rgb[0] == 1.0f && rgb[400 * 400] == 0.5f && rgb[2 * 400 * 400] == 0.0f); /* a corner shows the background */
     const size_t at = 100 * 200 + 100, from = 200 * 400 + 200;
@@ -321,7 +321,7 @@ static void test_view_dependence(void **state)
         const adcgs_scene_view *v = &scene->views[ADCGS_SPLIT_TEST][i];
         const size_t middle = 200 * 400 + 200, plane = 400 * 400;
         float *rgb;
-        expect_good(adcgs_scene_load(scene, v, 1, &rgb, NULL, &error));
+        expect_good(adcgs_scene_image(scene, v, 1, &rgb, NULL, &error));
         const double green = 0.5 + sqrt(0.75 / M_PI) * v->camera.cam_to_world[10];
         near(rgb[middle], 0.99f * 0.5f, 1e-3, 0.0);
         near(rgb[plane + middle], 0.99f * (float)fmax(green, 0.0), 1e-3, 0.0);
