@@ -21,7 +21,7 @@ typedef struct adcgs_loss_strip {
     double l1, mse, ssim;                     /**< out: sums over the strip's pixels */
 } adcgs_loss_strip;
 
-/** Rows that are kept, a power of two, and rows of a batch; arithmetic of what a batch reads. */
+/** Rows that are kept, a power of two, and rows of a batch; arithmetic: a batch reads some rows above and below its own. */
 enum { ADCGS_LOSS_RING = 32, ADCGS_LOSS_TURN = 16 };
 
 /** A row of a strip in stripes: lane l of vector i is column l * stripe + i. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * From the requested to the resolved configuration. Preset and user determine the request, which stays unchanged. A run uses a
- * copy of it, which these phases alone change, each at the moment at which its facts are known. Every change is recorded in the
+ * copy of it, which these phases alone change, each as soon as its facts are known. Every change is recorded in the
  * copy: the decider, the reason and the requested value. A value that the user gave stays, unless the phase says otherwise.
  */
 #ifndef ADCGS_TRAIN_RESOLVE_H

@@ -51,7 +51,7 @@ static adcgs_status explain_heif(const char *path, adcgs_status status, adcgs_er
                       kind->name, stem, adcgs_extension(path), stem);
 }
 
-/** A panorama has no lens of which COLMAP could find the parameters. */
+/** COLMAP has no lens model for panoramas. */
 static adcgs_status refuse_panorama(const char *path, adcgs_error *error)
 {
     char projection[ADCGS_PANORAMA_NAME];

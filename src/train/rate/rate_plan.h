@@ -16,8 +16,8 @@ typedef struct adcgs_rate_plan {
 } adcgs_rate_plan;
 
 /**
- * Fits the budget of anchors and the widths of the networks into a size, unless the user set them. Without a target, the plan has
- * the values of the configuration. ADCGS_ERR_USAGE if not even the smallest networks and a few anchors fit.
+ * Fits the budget of anchors and the widths of the networks into a size, unless the user gave them. The plan of a run
+ * without a target has the values of the configuration. ADCGS_ERR_USAGE if not even the smallest networks and a few anchors fit.
  */
 adcgs_status adcgs_rate_plan_make(adcgs_rate_plan *plan, const adcgs_train_config *config, adcgs_error *error);
 

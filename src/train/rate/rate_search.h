@@ -12,17 +12,17 @@
 
 /** True if the search is not finished. A run with a time limit cannot return. */
 int adcgs_rate_is_sought(const adcgs_trainer *trainer);
-/** Called before each iteration during the search. A try that fails sets t->next_lambda. */
+/** Called before each iteration during the search. A try that fails sets rate.next_lambda. */
 adcgs_status adcgs_rate_search_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
 
 /**
  * Called after values are frozen. missing: dB below the target, negative if above. On the first shortfall, a run with a search
- * sets t->next_lambda.
+ * sets rate.next_lambda.
  */
 void adcgs_rate_search_end(adcgs_trainer *trainer, double missing);
 /**
- * Restores the state at rate_start, except lambda, which becomes t->next_lambda, and the elapsed time. The training loop calls it
- * where t->next_lambda is set: t->iteration decreases, and so progress.
+ * Restores the state at rate_start, except lambda, which becomes rate.next_lambda, and the elapsed time. The training
+ * loop calls it where rate.next_lambda is set: run.iteration decreases, and so progress.
  */
 adcgs_status adcgs_rate_search_return(adcgs_trainer *trainer, adcgs_error *error);
 

@@ -10,7 +10,7 @@
 typedef struct adcgs_run_state {
     /* In checkpoints. */
     uint32_t iteration;
-    float lr_scale; /**< factor of all learning rates; a rollback halves it */
+    float lr_scale; /**< factor of the step sizes; a rollback halves it */
     uint32_t rollbacks;
     double mean_loss, mean_mse;
     double least_mse;   /**< minimum of mean_mse; 0 before the first iteration */

@@ -100,7 +100,7 @@ adcgs_status adcgs_test_motion_gain(adcgs_trainer *t, adcgs_error *error)
         return ADCGS_OK;
     ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 0, &stopped, error));
     ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 1, &moving, error));
-    /* Unit pruning later leaves few of the hidden weights where little moves. */
+    /* Unit pruning later leaves a small share of the hidden weights where little moves. */
     const size_t weights = (f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n) / UNITS_ONE_IN + f->mlp[ADCGS_P_TIME].n;
     t->decisions.loss_still = stopped;
     t->decisions.loss_moving = moving;
