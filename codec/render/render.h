@@ -10,26 +10,12 @@
 #include "base/thread_pool.h"
 #include "base/cpu_detect.h"
 
-#include <adcgs/types.h>
+#include <adcgs/view.h>
 
 #define ADCGS_TILE 16
 
 /** Default screen filter of streams: variance in pixels^2 added to a splat's screen covariance (Kerbl et al., 2023). */
 #define ADCGS_SCREEN_FILTER 0.3f
-
-/** A camera prepared for rendering: scene units, binary32. */
-typedef struct adcgs_view {
-    int32_t width, height;
-    float rotation[9];    /**< scene to camera, row-major */
-    float translation[3]; /**< camera = rotation * scene + translation */
-    float fx, fy, cx, cy;
-    float near_plane;
-    float limit[4]; /**< bounds of X/Z (lo, hi) and Y/Z (lo, hi) inside the Jacobian */
-} adcgs_view;
-
-/** Validates the camera; world = origin + scale * scene. Computes in binary64, rounds once per field (spec "View"). */
-adcgs_status adcgs_view_init(adcgs_view *view, const adcgs_camera *camera, const double origin[3], double scale,
-                             adcgs_error *error);
 
 /** One projected splat, 64 bytes. alpha = exp2(a dx^2 + b dx dy + c dy^2 + log2_opacity), dx = pixel centre - x. */
 typedef struct adcgs_splat2d {

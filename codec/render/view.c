@@ -45,6 +45,8 @@ static void fill_limits(adcgs_view *view, const adcgs_camera *camera)
 adcgs_status adcgs_view_init(adcgs_view *view, const adcgs_camera *camera, const double origin[3], double scale,
                              adcgs_error *error)
 {
+    if (!view || !camera || !origin)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %s is NULL", __func__, !view ? "view" : !camera ? "camera" : "origin");
     ADCGS_TRY(check_camera(camera, error));
     if (!usable(scale, 0x1p-60, 0x1p60))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scene scale %g, expected 2^-60..2^60", scale);

@@ -4,6 +4,7 @@
 
 #include "model/model_priv.h"
 #include "render/render.h"
+#include "stream/chunk.h"
 
 #include <adcgs/version.h>
 
@@ -90,6 +91,8 @@ void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info)
         .bytes = stream->bytes,
         .metadata = (int)stream->n_meta,
         .first_segment = (int)stream->first_segment,
+        .screen_filter = stream->screen_filter,
+        .bytes_max = stream->level ? adcgs_level_get(stream->level)->file_bytes : 0,
     };
     for (int a = 0; a < 3; a++) {
         info->scene_origin[a] = stream->scene_origin[a];

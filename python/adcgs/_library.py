@@ -51,6 +51,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "adcgs_status_name": (c_char_p, [c_int]),
     "adcgs_version_number": (c_uint32, []),
     "adcgs_version_string": (c_char_p, []),
+    "adcgs_view_init": (c_int, [POINTER(s.adcgs_view), _camera, POINTER(c_double), c_double, _error]),
 }
 
 

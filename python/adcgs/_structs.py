@@ -36,12 +36,18 @@ class adcgs_info(Structure):
                 ("background", c_float * 3), ("truncated", c_int), ("colour", c_char * 32), ("axes", c_char * 32),
                 ("units", c_char * 32), ("bytes", adcgs_bytes), ("metadata", c_int), ("faults", c_int), ("tiers", c_int),
                 ("tiers_present", c_int), ("time_committed", c_double), ("time_available", c_double), ("segments_total", c_int),
-                ("tiers_received", c_int), ("first_segment", c_int)]
+                ("tiers_received", c_int), ("first_segment", c_int), ("screen_filter", c_float),
+                ("bytes_max", c_uint64)]
 
 
 class adcgs_camera(Structure):
     _fields_ = [("width", c_int32), ("height", c_int32), ("fx", c_double), ("fy", c_double), ("cx", c_double), ("cy", c_double),
                 ("cam_to_world", c_double * 12), ("near_plane", c_double), ("name", c_char * 64)]
+
+
+class adcgs_view(Structure):
+    _fields_ = [("width", c_int32), ("height", c_int32), ("rotation", c_float * 9), ("translation", c_float * 3), ("fx", c_float),
+                ("fy", c_float), ("cx", c_float), ("cy", c_float), ("near_plane", c_float), ("limit", c_float * 4)]
 
 
 class adcgs_frame(Structure):
@@ -53,4 +59,4 @@ class adcgs_primitives(Structure):
                 ("rotation", POINTER(c_float) * 4), ("opacity", POINTER(c_float)), ("colour", POINTER(c_float) * 3)]
 
 
-STRUCTS = (adcgs_error, adcgs_config, adcgs_bytes, adcgs_info, adcgs_camera, adcgs_frame, adcgs_primitives)
+STRUCTS = (adcgs_error, adcgs_config, adcgs_bytes, adcgs_info, adcgs_camera, adcgs_view, adcgs_frame, adcgs_primitives)

@@ -90,6 +90,8 @@ class Info(NamedTuple):
     segments_total: int
     tiers_received: int
     first_segment: int
+    screen_filter: float
+    bytes_max: int
 
 
 def _count(n: int, word: str) -> str:

@@ -43,13 +43,13 @@ check src "$codec" system geometry net media scene camera metric synthetic grad 
     apps/shared apps/adcgs apps/check apps/conform apps/dec apps/demo apps/enc apps/eval apps/import apps/info apps/join apps/share apps/sweep
 
 # Only codec/api uses the installed headers decoder.h, frame.h and adcgs.h. The folders below it use those of types, and of the
-# interface of base.
+# interfaces of base and render.
 if grep -nE '^ *# *include *<adcgs/' codec/{base,bits,geom,net,model,splat,render,stream}/*.[ch] |
-    grep -v -E 'include <adcgs/(status|types|version|cpu|pool)\.h>' >&2; then
+    grep -v -E 'include <adcgs/(status|types|version|cpu|pool|view)\.h>' >&2; then
     echo "a folder below codec/api includes its headers" >&2
     faults=$((faults + 1))
 fi
-if grep -n '^ *# *include <adcgs/' codec/include/adcgs/{status,types,version,cpu,pool}.h |
+if grep -n '^ *# *include <adcgs/' codec/include/adcgs/{status,types,version,cpu,pool,view}.h |
     grep -v -E 'include <adcgs/(status|types)\.h>' >&2; then
     echo "a basic installed header includes more than types.h and status.h" >&2
     faults=$((faults + 1))

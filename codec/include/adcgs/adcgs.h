@@ -12,5 +12,6 @@
 #include <adcgs/status.h>
 #include <adcgs/types.h>
 #include <adcgs/version.h>
+#include <adcgs/view.h>
 
 #endif

@@ -144,6 +144,8 @@ typedef struct adcgs_info {
     int segments_total;      /**< total number of segments of a pushed stream; 0: its header does not give it */
     int tiers_received;      /**< tiers of the segment being received that can be rendered; 0: none, or no such segment */
     int first_segment;       /**< number of the first available segment: above 0 if earlier ones were freed or missed */
+    float screen_filter;     /**< variance added to the projection of a splat, square pixels, 0..16 (clause "Projection") */
+    uint64_t bytes_max;      /**< maximum size of a stream of this level, bytes (clause "Levels") */
 } adcgs_info;
 
 /** Longest name of a camera, bytes without the zero. */
@@ -165,6 +167,24 @@ typedef struct adcgs_camera {
     double near_plane;                    /**< world units, > 0: nothing closer is rendered */
     char name[ADCGS_CAMERA_NAME_MAX + 1]; /**< UTF-8, may be empty */
 } adcgs_camera;
+
+/**
+ * A camera as the renderer uses it: scene units, binary32 (clause "View"). For programs that draw the splats of
+ * adcgs_get_primitives() themselves. The floats lie in a row without padding. A point p of the scene has the camera coordinates
+ * rotation p + translation.
+ */
+typedef struct adcgs_view {
+    int32_t width;        /**< pixels, of the camera */
+    int32_t height;       /**< pixels, of the camera */
+    float rotation[9];    /**< row-major 3x3: from the scene's axes to the camera's */
+    float translation[3]; /**< scene units */
+    float fx;             /**< focal length in pixel widths, of the camera */
+    float fy;             /**< focal length in pixel heights, of the camera */
+    float cx;             /**< principal point in pixels, of the camera */
+    float cy;             /**< principal point in pixels, of the camera */
+    float near_plane;     /**< scene units: nothing closer is rendered */
+    float limit[4];       /**< X/Z lowest and highest, then Y/Z: bounds of a splat's centre in the derivative of its projection */
+} adcgs_view;
 
 /** A rendered frame, RGB in the stream's transfer characteristic, 0 black to 1 white, not clipped. */
 typedef struct adcgs_frame {

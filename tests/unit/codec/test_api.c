@@ -103,6 +103,36 @@ static void test_info_sizes(void **state)
     adcgs_close(&d);
 }
 
+/** With the summary alone, a program draws splats as the decoder does, and knows when a stream is too long. REQ-REND-001 */
+static void test_facts_for_drawing(void **state)
+{
+    const fixture *f = *state;
+    const uint64_t bytes_max[] = {UINT64_C(4) << 20, UINT64_C(256) << 20, UINT64_C(64) << 30};
+    fixture changed = *f;
+    adcgs_view view;
+    adcgs_info info;
+    changed.bytes = (adcgs_buffer){0};
+    for (int level = 1; level <= 3; level++) {
+        changed.stream.level = (uint8_t)level;
+        changed.stream.screen_filter = 0.25f * (float)level;
+        changed.bytes.size = 0;
+        assert_int_equal(adcgs_stream_write(&changed.stream, &changed.bytes, NULL), ADCGS_OK);
+        adcgs_decoder *d = open_with(&changed, NULL);
+        assert_int_equal(adcgs_get_info(d, &info, sizeof info, NULL), ADCGS_OK);
+        assert_true(info.level == level && info.bytes_max == bytes_max[level - 1]);
+        assert_true(info.screen_filter == 0.25f * (float)level);
+        adcgs_close(&d);
+    }
+    adcgs_buffer_clear(&changed.bytes);
+    assert_int_equal(adcgs_view_init(&view, &fixture_camera, info.scene_origin, info.scene_scale, NULL), ADCGS_OK);
+    for (int i = 0; i < 9; i++)
+        assert_true(view.rotation[i] == (i % 4 ? 0.0f : 1.0f));
+    assert_true(view.translation[0] == 0 && view.translation[1] == 0 && view.translation[2] == 3.6f);
+    assert_true(view.width == FIXTURE_WIDTH && view.height == FIXTURE_HEIGHT && view.near_plane == (float)(0.1 / 2.5));
+    assert_true(view.fx == 60 && view.fy == 60 && view.cx == 30 && view.cy == 23);
+    assert_true(view.limit[0] == (float)((-30 - 0.15 * FIXTURE_WIDTH) / 60) && view.limit[3] > (FIXTURE_HEIGHT - 23) / 60.0f);
+}
+
 static void test_metadata(void **state)
 {
     const fixture *f = *state;
@@ -142,10 +172,11 @@ static void test_errors(void **state)
     const fixture *f = *state;
     adcgs_decoder *d = open_with(f, NULL), *none = NULL;
     adcgs_camera camera = fixture_camera;
+    adcgs_view view;
     adcgs_primitives primitives;
     adcgs_frame frame = {FIXTURE_WIDTH, FIXTURE_HEIGHT, NULL};
     adcgs_pool *pool;
-    adcgs_info info;
+    adcgs_info info = {0};
     adcgs_error error;
     uint8_t digest[16];
     ASSERT_REFUSED(adcgs_open_file(NULL, "x", NULL, &error), "out");
@@ -166,6 +197,10 @@ static void test_errors(void **state)
     ASSERT_REFUSED(adcgs_render_depth(NULL, &fixture_camera, 0, NULL, NULL, &error), "adcgs_render_depth: decoder");
     ASSERT_REFUSED(adcgs_render_depth(d, NULL, 0, NULL, NULL, &error), "camera");
     ASSERT_REFUSED(adcgs_render_rgba8(d, &fixture_camera, 0, ADCGS_ALPHA_OPAQUE, NULL, 4, &error), "pixels");
+    ASSERT_REFUSED(adcgs_view_init(NULL, &fixture_camera, info.scene_origin, 1, &error), "view");
+    ASSERT_REFUSED(adcgs_view_init(&view, NULL, info.scene_origin, 1, &error), "camera");
+    ASSERT_REFUSED(adcgs_view_init(&view, &fixture_camera, NULL, 1, &error), "origin");
+    ASSERT_REFUSED(adcgs_view_init(&view, &fixture_camera, info.scene_origin, -1, &error), "scale");
     ASSERT_REFUSED(adcgs_pool_create(&pool, 257, &error), "257");
     ASSERT_REFUSED(adcgs_pool_wrap(&pool, 4, NULL, NULL, &error), "function");
     assert_int_equal(adcgs_get_info(NULL, &info, sizeof info, NULL), ADCGS_ERR_USAGE);
@@ -312,7 +347,7 @@ int main(void)
         cmocka_unit_test(test_info_sizes),    cmocka_unit_test(test_metadata),
         cmocka_unit_test(test_version),       cmocka_unit_test(test_errors),
         cmocka_unit_test(test_memory_limits), cmocka_unit_test(test_log),
-        cmocka_unit_test(test_writer_limits),
+        cmocka_unit_test(test_writer_limits), cmocka_unit_test(test_facts_for_drawing),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
