@@ -45,8 +45,10 @@ int main(int argc, char **argv)
         adcgs_requests_clear(&requests);
     }
     adcgs_close(&decoder);
-    if (status == ADCGS_OK && (fflush(stdout) || ferror(stdout)))
-        status = adcgs_fail(&error, ADCGS_ERR_IO, "standard output: cannot write");
+    if (status == ADCGS_OK && (fflush(stdout) || ferror(stdout))) {
+        status = ADCGS_ERR_IO;
+        snprintf(error.text, sizeof error.text, "standard output: cannot write");
+    }
     if (status != ADCGS_OK)
         fprintf(stderr, "%s\n", error.text);
     return adcgs_exit_code(status);

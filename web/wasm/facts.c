@@ -5,8 +5,6 @@
 #include "wasm/export.h"
 #include "wasm/page_scene.h"
 
-#include "base/base.h"
-
 #include <adcgs/adcgs.h>
 
 #include <math.h>
@@ -22,7 +20,7 @@ typedef struct text {
     size_t used, room;
 } text;
 
-static void put(text *t, const char *format, ...) ADCGS_PRINTF(2, 3);
+static void put(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 static void put(text *t, const char *format, ...)
 {
     for (;;) {

@@ -2,13 +2,9 @@
 /** \file The page's scene: takes bytes, gives a summary and exact frames. One scene per instance. */
 #include "config.h"
 
-#include "api/decoder_priv.h"
-#include "api/frame_samples.h"
-#include "base/digest.h"
 #include "camera/follow.h"
 #include "camera/pivot.h"
 #include "geometry/rotation.h"
-#include "stream/chunk.h"
 #include "wasm/export.h"
 #include "wasm/page_scene.h"
 #include "wasm/wasm_threads.h"
@@ -18,9 +14,12 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /** Maximum size of a stream that is kept: opening it again needs twice as much, in a memory of 4 GiB. */
 #define BYTES_MOST (UINT64_C(1) << 30)
+/** Maximum size of a stream of level 2, definition (spec clause "Levels"): the bound before HEAD gives the level. */
+#define BYTES_UNKNOWN (UINT64_C(256) << 20)
 
 static struct {
     adcgs_decoder *decoder;
@@ -44,6 +43,13 @@ adcgs_decoder *adcgs_page_decoder(void)
 adcgs_error *adcgs_page_error(void)
 {
     return &scene.error;
+}
+
+adcgs_status adcgs_page_fail(adcgs_status status, const char *text)
+{
+    scene.error.status = status;
+    snprintf(scene.error.text, sizeof scene.error.text, "%s", text);
+    return status;
 }
 
 void *PAGE_EXPORT(page_alloc)(size_t bytes)
@@ -115,7 +121,7 @@ int PAGE_EXPORT(page_push)(const uint8_t *data, size_t bytes)
         const adcgs_status status = adcgs_push(scene.decoder, data, bytes, &used, &arrived, &scene.error);
         if (status != ADCGS_OK)
             return status;
-        most = ADCGS_MAX(most, (int)arrived);
+        most = (int)arrived > most ? (int)arrived : most;
     }
     return most;
 }
@@ -125,8 +131,8 @@ double PAGE_EXPORT(page_useful)(void)
 {
     adcgs_info info;
     const int known = adcgs_get_info(scene.decoder, &info, sizeof info, NULL) == ADCGS_OK;
-    const uint64_t bytes = known ? adcgs_level_get(info.level)->file_bytes : ADCGS_SALVAGE_BYTES;
-    return (double)ADCGS_MIN(bytes, BYTES_MOST);
+    const uint64_t bytes = known ? info.bytes_max : BYTES_UNKNOWN;
+    return (double)(bytes < BYTES_MOST ? bytes : BYTES_MOST);
 }
 
 int PAGE_EXPORT(page_end)(void)
@@ -139,10 +145,11 @@ const adcgs_info *PAGE_EXPORT(page_info)(void)
     return adcgs_get_info(scene.decoder, &scene.info, sizeof scene.info, &scene.error) == ADCGS_OK ? &scene.info : NULL;
 }
 
-/** Variance that the renderer adds to the splats' footprints, square pixels. */
+/** Variance that the renderer adds to the splats' footprints, square pixels; 0 before the header. */
 float PAGE_EXPORT(page_filter)(void)
 {
-    return scene.decoder->stream.screen_filter;
+    const adcgs_info *info = page_info();
+    return info ? info->screen_filter : 0;
 }
 
 size_t PAGE_EXPORT(page_info_size)(void)
@@ -207,29 +214,44 @@ static adcgs_status reserve(size_t pixels)
     scene.values = malloc(3 * pixels * sizeof *scene.values);
     scene.rgba = malloc(4 * pixels);
     scene.pixels = scene.values && scene.rgba ? pixels : 0;
-    return scene.pixels ? ADCGS_OK : adcgs_fail(&scene.error, ADCGS_ERR_MEMORY, "out of memory for an image");
+    return scene.pixels ? ADCGS_OK : adcgs_page_fail(ADCGS_ERR_MEMORY, "out of memory for an image");
+}
+
+/** From three samples a pixel to four, in place. */
+static void widen(uint8_t *rgba, size_t pixels)
+{
+    for (size_t i = pixels; i-- > 0;) {
+        const uint8_t rgb[3] = {rgba[3 * i], rgba[3 * i + 1], rgba[3 * i + 2]};
+        memcpy(rgba + 4 * i, rgb, sizeof rgb);
+        rgba[4 * i + 3] = 255;
+    }
+}
+
+static void write_digest(const adcgs_frame *frame, char text[33])
+{
+    uint8_t bytes[16];
+    adcgs_frame_digest(frame, bytes);
+    for (size_t i = 0; i < sizeof bytes; i++)
+        snprintf(text + 2 * i, 3, "%02x", bytes[i]);
 }
 
 /** Render an exact frame, of the first tiers only if tiers is not 0; with digest, also its MD5. */
 int PAGE_EXPORT(page_draw)(const adcgs_camera *camera, double time, int tiers, int digest)
 {
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
-    ADCGS_TRY(adcgs_set_tiers(scene.decoder, tiers, &scene.error));
-    ADCGS_TRY(reserve(pixels));
+    adcgs_status status = adcgs_set_tiers(scene.decoder, tiers, &scene.error);
+    if (status == ADCGS_OK)
+        status = reserve(pixels);
     adcgs_frame frame = {.width = camera->width, .height = camera->height, .rgb = scene.values};
-    ADCGS_TRY(adcgs_render(scene.decoder, camera, time, &frame, &scene.error));
+    if (status == ADCGS_OK)
+        status = adcgs_render(scene.decoder, camera, time, &frame, &scene.error);
+    if (status != ADCGS_OK)
+        return status;
     adcgs_frame_to_u8(&frame, scene.rgba);
-    for (size_t i = pixels; i-- > 0;) { /* from three samples to four, in place */
-        const uint8_t rgb[3] = {scene.rgba[3 * i], scene.rgba[3 * i + 1], scene.rgba[3 * i + 2]};
-        memcpy(scene.rgba + 4 * i, rgb, sizeof rgb);
-        scene.rgba[4 * i + 3] = 255;
-    }
+    widen(scene.rgba, pixels);
     *scene.digest = 0;
-    if (digest) {
-        uint8_t bytes[16];
-        adcgs_frame_digest(&frame, bytes);
-        adcgs_md5_hex(bytes, scene.digest);
-    }
+    if (digest)
+        write_digest(&frame, scene.digest);
     return ADCGS_OK;
 }
 

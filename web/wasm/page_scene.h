@@ -11,4 +11,7 @@ adcgs_decoder *adcgs_page_decoder(void);
 /** The error that page_error() reports. */
 adcgs_error *adcgs_page_error(void);
 
+/** Make a line of text the error that page_error() reports. \return status */
+adcgs_status adcgs_page_fail(adcgs_status status, const char *text);
+
 #endif

@@ -2,14 +2,13 @@
 /** \file Splats for a GPU: four texels each, and the order of rendering, from the farthest to the nearest. */
 #include "config.h"
 
-#include "base/base.h"
-#include "render/render.h"
 #include "wasm/export.h"
 #include "wasm/page_scene.h"
 
 #include <adcgs/adcgs.h>
 
 #include <stdlib.h>
+#include <string.h>
 
 #define TEXELS 4
 #define BUCKETS 65536
@@ -39,10 +38,12 @@ static int reserve(uint32_t n)
 int PAGE_EXPORT(page_pack)(double time)
 {
     adcgs_primitives p;
-    ADCGS_TRY(adcgs_get_primitives(adcgs_page_decoder(), time, &p, adcgs_page_error()));
+    const adcgs_status status = adcgs_get_primitives(adcgs_page_decoder(), time, &p, adcgs_page_error());
+    if (status != ADCGS_OK)
+        return status;
     splats.n = 0;
     if (reserve(p.n))
-        return adcgs_fail(adcgs_page_error(), ADCGS_ERR_MEMORY, "out of memory for %u splats", (unsigned)p.n);
+        return adcgs_page_fail(ADCGS_ERR_MEMORY, "out of memory for the splats of a time");
     for (uint32_t i = 0; i < p.n; i++) {
         if (!(p.opacity[i] > 0))
             continue;

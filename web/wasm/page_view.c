@@ -6,12 +6,14 @@
 #include "play/actions.h"
 #include "play/by_hand.h"
 #include "play/scale.h"
-#include "render/render.h"
 #include "wasm/export.h"
+
+#include <adcgs/view.h>
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define HAND_SECONDS (1.0 / 30.0) /* seconds, maximum for an image while the camera is moved by hand */
 #define BUDGET_MAX (1.0 / 8.0)    /* seconds, maximum while playing: at least 8 images/s; browsers are slower than the player */
@@ -31,7 +33,7 @@ void PAGE_EXPORT(view_span)(const adcgs_info *info, int over)
 {
     adcgs_play_clock *const clock = &page.state.clock;
     adcgs_play_clock_span(clock, info->time_start,
-                          isfinite(info->time_end) ? info->time_end : ADCGS_MAX(info->time_available, info->time_start));
+                          isfinite(info->time_end) ? info->time_end : fmax(info->time_available, info->time_start));
     clock->available = over ? INFINITY : info->time_available - clock->begin;
     if (info->tiers != page.scale.all)
         adcgs_play_scale_init(&page.scale, info->tiers);
@@ -109,7 +111,7 @@ void PAGE_EXPORT(view_seek)(double part)
 void PAGE_EXPORT(view_start)(double time, int loop, int playing)
 {
     adcgs_play_clock *const clock = &page.state.clock;
-    adcgs_play_clock_seek(clock, (time - clock->begin) * clock->rate / ADCGS_MAX(1, clock->frames - 1));
+    adcgs_play_clock_seek(clock, (time - clock->begin) * clock->rate / fmax(1, clock->frames - 1));
     clock->loop = loop;
     if (playing != clock->playing)
         adcgs_play_clock_toggle(clock);
@@ -185,7 +187,7 @@ void PAGE_EXPORT(view_took)(double seconds)
 {
     const adcgs_play_clock *const clock = &page.state.clock;
     const double each = clock->playing ? 1.0 / (clock->rate * adcgs_play_clock_factor(clock)) : HAND_SECONDS;
-    adcgs_play_scale_took(&page.scale, seconds, ADCGS_MAX(HAND_SECONDS, ADCGS_MIN(each, BUDGET_MAX)));
+    adcgs_play_scale_took(&page.scale, seconds, fmax(HAND_SECONDS, fmin(each, BUDGET_MAX)));
 }
 
 /* ---- Queries. ---- */
