@@ -55,7 +55,7 @@ value() { tr -d '\n' <"$1" | sed -n "s/.*[{,] *\"$2\": *\([-0-9.e]*\).*/\1/p"; }
 
 scene=$dir/scene
 tiny_scene "$scene"
-n=600
+n=300
 
 # Sizes (ADCGS_FULL=1: three): never larger, and smaller by less than 3 %; the report agrees.
 for size in ${ADCGS_FULL:+12000 30KiB} 20k; do
@@ -76,7 +76,7 @@ enc 0 many --size 12k --set max_anchors=600,theta_width=16,omega_width=16,varpi_
 within "$(wc -c <"$dir/many.adcgs")" 11641 12000 "bytes with many anchors"
 
 # The same bytes after an interrupt, with other numbers of threads (ADCGS_FULL=1: early and late); a run belongs to its target.
-for at in ${ADCGS_FULL:+100} 200; do
+for at in ${ADCGS_FULL:+200} 100; do
     rm -f "$dir/state"
     interrupt INT "$dir/stop.log" "\"iteration\":$at," ./adcgs-enc "$scene" -o "$dir/stop.adcgs" --preset draft --max-anchors 300 --size 20k \
         --iterations $n --threads 2 --log "$dir/stop.log" --checkpoint "$dir/state"

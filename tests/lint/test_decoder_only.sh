@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
 # configure --disable-encoder: the library, adcgs-dec and adcgs-info need nothing but a C compiler. The build assumes a linker
-# that cannot version symbols; the library exports the same names then.
+# that cannot version symbols; the library exports the same names then. Only with ADCGS_FULL=1: it is a whole build.
 set -u
+[ -n "${ADCGS_FULL-}" ] || { echo "skipped: a build of the decoder alone: only with ADCGS_FULL=1"; exit 77; }
 source=$(cd "${srcdir:-.}" && pwd) || exit 99
 # A tree configured in place cannot be configured elsewhere, too.
 [ -x "$source/configure" ] && [ ! -f "$source/config.status" ] || { echo "skipped: the source tree is configured in place"; exit 77; }
