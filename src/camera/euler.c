@@ -7,8 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-#define DEGREE 0.017453292519943295
-#define LEVEL 1e-9 /* cosine of the middle angle below which the first and the last axis coincide */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define DEGREE 0.017453292519943295 /* radians; definition */
+#define LEVEL 1e-9                  /* cosine of the middle angle below which the first and the last axis coincide */
 
 const char *const adcgs_rotation_orders[] = {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx", NULL};
 

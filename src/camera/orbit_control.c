@@ -9,12 +9,13 @@
 
 #include <math.h>
 
-#define HALF_TURN 3.141592653589793
-#define POLE 0.01     /* smallest angle [radians] between the view and up or down */
-#define NEAREST 1e-3  /* smallest depth of the target [scene units] */
-#define FARTHEST 1e5  /* largest distance from the centre [scene units], far below the limit of a view */
-#define CROP_MOST 2.0 /* the camera's width or height, relative to the part of it that an image shows */
-#define ZOOM_STEP 0.9 /* factor of the target's depth per step */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define HALF_TURN 3.141592653589793 /* radians; definition */
+#define POLE 0.01                   /* smallest angle [radians] between the view and up or down */
+#define NEAREST 1e-3                /* smallest depth of the target [scene units] */
+#define FARTHEST 1e5                /* largest distance from the centre [scene units], far below the limit of a view */
+#define CROP_MOST 2.0               /* the camera's width or height, relative to the part of it that an image shows */
+#define ZOOM_STEP 0.9               /* factor of the target's depth per step */
 
 /** A column of the matrix: 0 right, 1 down, 2 forward, 3 position. */
 static void get_column(const adcgs_orbit_control *control, int column, double v[3])

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define FULL_TURN 6.283185307179586
+#define FULL_TURN 6.283185307179586 /* radians; definition */
 
 adcgs_status adcgs_camera_path_rendered(const adcgs_camera *camera, adcgs_status status, adcgs_error *error)
 {

@@ -81,11 +81,12 @@ adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const adcgs_c
                                      const char *path, adcgs_error *error);
 
 /* The declarations below are for the files of this part only. */
+/* Origin: chosen by hand, not measured. */
 #define ADCGS_PATH_FRAMES_MAX 1000000 /**< frames of a path */
 #define ADCGS_ORBIT_WIDTH 800         /**< image width of cameras without one, pixels */
 #define ADCGS_ORBIT_HEIGHT 600        /**< image height of cameras without one, pixels */
 #define ADCGS_NEAR_PER_SCALE 0.01     /* near plane of cameras without one, per scene unit */
-#define ADCGS_PATH_SECONDS 4.0        /* duration of a path around a static scene */
+#define ADCGS_PATH_SECONDS 4.0        /* duration of a path around a static scene, seconds */
 
 /** who: source of the number n in messages, a file; NULL: the user, for a usage error. */
 adcgs_status adcgs_camera_path_alloc(adcgs_camera_path *frames, double n, const char *who, adcgs_error *error);

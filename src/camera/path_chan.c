@@ -14,10 +14,12 @@
 #include <stdlib.h>
 
 #define BLANKS " \t\r,"
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define BYTES_MAX ((uint64_t)256 << 20) /* of a file */
 #define VALUE_MAX 1e9                   /* largest absolute value of a number */
-#define DEGREE 0.017453292519943295
+#define DEGREE 0.017453292519943295     /* radians; definition */
 
+/* Columns of a line, by definition of the format: frame, position, three angles, vertical field of view. */
 enum { FRAME, PLACE, ANGLES = 4, VIEW = 7, COLUMNS };
 
 /** Parse the numbers of a line. \return their count; -1 for other text */

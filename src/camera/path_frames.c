@@ -8,6 +8,7 @@
 
 #include <stdlib.h>
 
+/* Origin: chosen by hand, not measured. */
 #define ORBIT_DISTANCE 2.5   /* scene units */
 #define ORBIT_ELEVATION 0.35 /* radians */
 #define ORBIT_FOCAL 1.2      /* focal length per image width */

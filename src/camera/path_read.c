@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define SECONDS_MAX 1e9 /* largest absolute value of a time */
+#define SECONDS_MAX 1e9 /* largest absolute value of a time, seconds; chosen by hand, not measured */
 
 /** Input of the reader, and the position in the file. */
 typedef struct reader {

@@ -10,12 +10,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define FULL_TURN 6.283185307179586
-#define SPIRAL_TURNS 2.0
-#define SPIRAL_LEAST 0.1  /* radius over the distance to the focus, for cameras without a spread of their own */
-#define SPIRAL_MOST 0.5   /* upper bound of the radius over the distance to the focus */
-#define LOOK_TOGETHER 0.5 /* smallest length of the mean viewing direction for which cameras have a mean pose */
-#define RING_GAP 2.0      /* largest gap within a closed ring, in mean gaps */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define FULL_TURN 6.283185307179586 /* radians; definition */
+#define SPIRAL_TURNS 2.0            /* turns of the path; literature: LLFF, 2019 (path.h) */
+#define SPIRAL_LEAST 0.1            /* radius over the distance to the focus, for cameras without a spread of their own */
+#define SPIRAL_MOST 0.5             /* upper bound of the radius over the distance to the focus */
+#define LOOK_TOGETHER 0.5           /* smallest length of the mean viewing direction for which cameras have a mean pose */
+#define RING_GAP 2.0                /* largest gap within a closed ring, in mean gaps */
 
 /** Mean of a column of the cameras' matrices: 0 right, 1 down, 2 forward, 3 position. */
 static void mean_column(const adcgs_rig *rig, int column, double out[3])

@@ -13,11 +13,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* USD's defaults: lengths in tenths of a scene unit; time codes per second. */
+/* USD's defaults, by definition: lengths in tenths of a scene unit; time codes per second. */
 #define APERTURE 20.955
 #define FOCAL 50.0
 #define CODES_A_SECOND 24.0
-#define WRITTEN_APERTURE 36.0 /* horizontal aperture in written files */
+
+/* Origin: chosen by hand, not measured. */
+#define WRITTEN_APERTURE 36.0 /* horizontal aperture in written files, tenths of a unit, as in 35 mm photography */
 #define FAR_PLANE 1e6         /* in written files, world units */
 #define OP "xformOp:"
 

@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin: chosen by hand, not measured. */
 #define SIDE 64        /* pixels of the reduced image's longer side */
 #define AROUND 0.125   /* share of the longer side: half the width of the square around the place that counts */
 #define OPAQUE 0.5f    /* minimum alpha of a pixel that shows the scene */

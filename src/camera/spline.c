@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Rates: of the position, of the rotation (a turn in the camera's own axes), of single numbers. */
+/* Places of rates, by definition: of the position, of the rotation (a turn in the camera's own axes), of single numbers. */
 enum { POSITION = 0, ROTATION = 3, NUMBERS = 6, N_NUMBERS = 6, RATES = NUMBERS + N_NUMBERS };
 
 struct adcgs_knot {

@@ -10,10 +10,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin: chosen by hand, not measured. */
 #define BYTES_MAX ((uint64_t)256 << 20) /* of a file */
 #define DEPTH_MAX 64                    /* nested prims */
 #define SAMPLES_MAX 1000000             /* of a property */
-#define NAME_MAX_BYTES 200
+#define NAME_MAX_BYTES 200              /* of a word, with its end; longer ones are truncated */
 
 typedef struct parser {
     const char *path, *at;

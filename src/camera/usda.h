@@ -9,7 +9,7 @@
 
 #include "base/base.h"
 
-#define ADCGS_USDA_NUMBERS 16 /**< per value: a matrix */
+#define ADCGS_USDA_NUMBERS 16 /**< numbers of a value, at most: those of a matrix4d, by definition of USD */
 
 typedef struct adcgs_usda_sample {
     double at; /**< time code */

@@ -10,9 +10,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 /*
- * Distances to the pivot: an orbit of 20 degrees. On 14 streams of all kinds, it showed at most 11 % more background than the
- * filmed images.
+ * Distances to the pivot: an orbit of 20 degrees moves by 0.35 of them (geometry). Checked on 14 streams of all kinds: that
+ * orbit showed at most 11 % more background than the filmed images.
  */
 #define RADIUS 0.36
 #define ANGLE 0.4         /* radians between viewing directions: a little more than that orbit */
