@@ -10,7 +10,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#define MESSAGE_SECONDS 3.0
+#define MESSAGE_SECONDS 3.0 /* for which a message is shown; chosen by hand, not measured */
 
 void adcgs_play_say(adcgs_play_state *state, const char *format, ...)
 {

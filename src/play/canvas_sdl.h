@@ -6,7 +6,7 @@
 #include "play/drawing.h"
 #include "play/fonts_ttf.h"
 
-#define ADCGS_CANVAS_LINES 128
+#define ADCGS_CANVAS_LINES 128 /**< lines of text whose textures are kept; chosen by hand, not measured */
 
 /** A line of text that was rendered before. */
 typedef struct adcgs_sdl_canvas_line {

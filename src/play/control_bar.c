@@ -8,7 +8,7 @@
 
 #include <stdio.h>
 
-#define ICON 0.42 /* height of an icon, in heights of its button */
+#define ICON 0.42 /* height of an icon, in heights of its button; chosen by hand, not measured */
 
 /** A polygon in a square about the middle of a button: from -1 to 1 in the icon's half height. */
 static void draw_icon_part(adcgs_drawing *d, const adcgs_rect *r, const float *points, int n)

@@ -6,12 +6,14 @@
 
 #include <math.h>
 
+/* Origin: chosen by hand, not measured. */
 #define TEXT_MIN 11.0        /* desktop units; smaller text is hard to read */
 #define TEXT_PER_HEIGHT 40.0 /* lines of text in the window's height, if they are larger than that */
 #define TEXT_PER_WIDTH 60.0  /* the same for the width of narrow windows */
 #define TEXT_PER_TINY 10.0   /* in windows smaller than any text */
-#define SHOWN_SECONDS 3.0    /* while playing, after the last movement of the pointer */
-/* Sizes in sizes of text. */
+#define SHOWN_SECONDS 3.0    /* while playing, in which the controls stay after the last movement of the pointer */
+
+/* Sizes in sizes of text; chosen by hand, not measured. */
 #define BUTTON 2.2
 #define SLIDER 1.4
 #define MARGIN 0.4

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#define LINE_HEIGHT 1.3 /* of a line, in sizes of the font */
+#define LINE_HEIGHT 1.3 /* of a line, in sizes of the font; chosen by hand, not measured */
 #define DOTS "..."
 
 int adcgs_line_height(int size)

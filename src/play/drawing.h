@@ -9,9 +9,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define ADCGS_SHAPES_MAX 256
-#define ADCGS_SHAPE_POINTS 4
-#define ADCGS_TEXT_BYTES 256 /* of a line, with its end */
+/* Origin: chosen by hand, not measured. */
+#define ADCGS_SHAPES_MAX 256 /* shapes of a drawing, at most */
+#define ADCGS_SHAPE_POINTS 4 /* points of a polygon, at most */
+#define ADCGS_TEXT_BYTES 256 /* bytes of a line, with its end */
 
 typedef struct adcgs_rect {
     int x, y, width, height;

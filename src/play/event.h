@@ -3,9 +3,9 @@
 #ifndef ADCGS_PLAY_EVENT_H
 #define ADCGS_PLAY_EVENT_H
 
-/** Keys: the lower-case ASCII character for keys that have one, else one of these. */
+/** Keys, by definition: the lower-case ASCII character for keys that have one, else one of these, above all bytes. */
 enum {
-    ADCGS_KEY_ESCAPE = 27,
+    ADCGS_KEY_ESCAPE = 27, /**< ASCII's too */
     ADCGS_KEY_LEFT = 256,
     ADCGS_KEY_RIGHT,
     ADCGS_KEY_HOME,

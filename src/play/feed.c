@@ -8,8 +8,9 @@
 #include <signal.h>
 #include <stdlib.h>
 
-#define PIECE_BYTES 65536
-#define BYTES_MAX ((uint64_t)1 << 32) /* the same limit as for a played file */
+/* Origin: chosen by hand, not measured. */
+#define PIECE_BYTES 65536             /* read at once */
+#define BYTES_MAX ((uint64_t)1 << 32) /* of a stream: the same limit as for a played file (dec_play.c) */
 
 struct adcgs_feed {
     adcgs_incoming in; /**< owned by the thread while it runs */

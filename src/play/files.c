@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define NUMBERS_MAX 999999
+#define NUMBERS_MAX 999999 /* largest number in a name: six digits, arithmetic */
 
 int adcgs_play_free_name(char out[PATH_MAX], const char *stream, const char *extension)
 {

@@ -10,6 +10,7 @@
 
 #include <math.h>
 
+/* Origin: chosen by hand, not measured. */
 #define RETURN_SECONDS 0.3 /* in which a view outside goes most of its way back, while it plays */
 #define LOOP_SECONDS 0.8   /* of the scene, from the path's end to its start; at most half of the scene */
 #define PART_STEPS 12      /* halvings: 1/4096 of an offset is invisible */

@@ -6,8 +6,9 @@
 
 #include "base/base.h"
 
-#define FIRST 0x20
-#define SIZE 9 /* of text, for which a pixel of a letter is a pixel: its nine rows then fit into a line */
+/* Origin: arithmetic. */
+#define FIRST 0x20 /* character of the first glyph: the space */
+#define SIZE 9 /* of text, pixels, for which a pixel of a letter is a pixel: its nine rows then fit into a line */
 
 /* One row per number, from the top; 0x10 is its leftmost pixel. */
 static const uint8_t glyphs[][ADCGS_GLYPH_HEIGHT] = {

@@ -5,6 +5,7 @@
 
 #include "play/drawing.h"
 
+/* Pixels, by definition of the glyphs in font.c. */
 #define ADCGS_GLYPH_WIDTH 5
 #define ADCGS_GLYPH_HEIGHT 9 /**< two rows lie below the line */
 #define ADCGS_CELL_WIDTH 6   /**< with the space between letters */

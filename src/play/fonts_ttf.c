@@ -18,7 +18,7 @@
 
 #include <stdlib.h>
 
-#define OPEN_MAX 8 /* fonts of one file and size */
+#define OPEN_MAX 8 /* fonts of one file and size, at most; chosen by hand, not measured */
 #define FAMILY "sans-serif"
 
 typedef struct font_file {

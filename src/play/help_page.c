@@ -8,7 +8,7 @@
 #include "play/controls.h"
 #include "play/overlay_colours.h"
 
-#define COLUMNS_MAX 3
+#define COLUMNS_MAX 3 /* columns of the page; chosen by hand, not measured */
 #define TITLE "h, escape or a click closes this page"
 
 /** The arrangement of the page; all lengths are pixels. */

@@ -13,7 +13,8 @@
 
 #include <stdio.h>
 
-#define MESSAGE_LINES 6
+/* Origin: chosen by hand, not measured. */
+#define MESSAGE_LINES 6 /* lines of a text, at most */
 #define HINT "h for help"
 #define OUTSIDE_ALPHA 128.0 /* of black at the limit of the filmed region, of 255 */
 

@@ -3,6 +3,7 @@
 #ifndef ADCGS_PLAY_OVERLAY_COLOURS_H
 #define ADCGS_PLAY_OVERLAY_COLOURS_H
 
+/* Colours, 0xRRGGBBAA; chosen by hand, not measured. */
 #define ADCGS_COLOUR_BACK 0x000000a8u
 #define ADCGS_COLOUR_PAGE 0x000000e0u   /* behind the help, which covers other text */
 #define ADCGS_COLOUR_SHADE 0x00000070u  /* on the image around the help */
@@ -15,6 +16,6 @@
 #define ADCGS_COLOUR_POINTED 0xffffff38u /* behind the control under the pointer */
 #define ADCGS_COLOUR_PRESSED 0xffffff70u
 
-#define ADCGS_LETTERS_MIN 5 /* pixels; smaller text is no text */
+#define ADCGS_LETTERS_MIN 5 /* pixels; smaller text is no text; chosen by hand, not measured */
 
 #endif

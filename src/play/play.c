@@ -11,11 +11,12 @@
 
 #include <stdlib.h>
 
-#define HEIGHT_WANTED 480    /* of the first window; smaller cameras are enlarged by a whole number */
-#define SIDE_MAX 4096        /* of the first window, for any camera */
+/* Origin: chosen by hand, not measured. */
+#define HEIGHT_WANTED 480    /* pixels, of the first window; smaller cameras are enlarged by a whole number */
+#define SIDE_MAX 4096        /* pixels, of the first window, for any camera */
 #define REFRESH_SECONDS 0.25 /* interval at which figures and messages are rendered again */
-#define WAIT_MOVING 4        /* milliseconds to wait for events */
-#define WAIT_STILL 100
+#define WAIT_MOVING 4        /* milliseconds to wait for events, while the image moves, in recordings and scripts */
+#define WAIT_STILL 100       /* the same otherwise */
 
 static void measure_window(adcgs_player *p)
 {

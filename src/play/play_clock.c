@@ -8,8 +8,9 @@
 
 #include <math.h>
 
-#define FRAMES_MAX 1e9
-#define ROUNDING 1e-6 /* frames: error of a position due to rounded times */
+/* Origin: chosen by hand, not measured. */
+#define FRAMES_MAX 1e9 /* frames of a scene, at most; an int holds them */
+#define ROUNDING 1e-6  /* frames: error of a position due to rounded times */
 
 static double length(const adcgs_play_clock *clock)
 {

@@ -10,16 +10,17 @@
 
 #include <math.h>
 
+/* Origin: chosen by hand, not measured. */
 #define RADIANS_PER_HEIGHT 3.0 /* rotation by a drag over the window's height */
-#define SPEED_STEP 1.25
-#define SPEED_MIN 0.01 /* scene units per second */
-#define SPEED_MAX 100.0
-#define SHIFT_SPEED 4.0    /* factor of the speed with shift */
-#define DOUBLE_SECONDS 0.4 /* between the two clicks of a double click, at most: the usual limit of desktops */
-#define DOUBLE_PIXELS 16.0 /* between them, pixels of a desktop of usual density: fingers are not steadier */
-#define POSE_WITHIN 1e-6   /* of elements of poses: paths are stored in binary32 */
-#define STILL_AFTER 0.2    /* seconds without a movement after which the image counts as still */
-#define HINT_SECONDS 8.0
+#define SPEED_STEP 1.25        /* factor of the speed per step of the wheel */
+#define SPEED_MIN 0.01         /* scene units per second */
+#define SPEED_MAX 100.0        /* scene units per second */
+#define SHIFT_SPEED 4.0        /* factor of the speed with shift */
+#define DOUBLE_SECONDS 0.4     /* between the two clicks of a double click, at most: the usual limit of desktops */
+#define DOUBLE_PIXELS 16.0     /* between them, pixels of a desktop of usual density: fingers are not steadier */
+#define POSE_WITHIN 1e-6       /* of elements of poses: paths are stored in binary32 */
+#define STILL_AFTER 0.2        /* seconds without a movement after which the image counts as still */
+#define HINT_SECONDS 8.0       /* for which hints are shown */
 
 /** Equal except for rounding. */
 static int same_pose(const double a[12], const double b[12])

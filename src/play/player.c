@@ -11,9 +11,10 @@
 #include <math.h>
 #include <stdio.h>
 
-#define HAND_SECONDS (1.0 / 30.0) /* maximum time of an image while the user moves the camera */
-#define BUDGET_MIN (1.0 / 60.0)   /* more images per second are invisible */
-#define BUDGET_MAX (1.0 / 15.0)   /* fewer images per second are no film */
+/* Origin: chosen by hand, not measured. */
+#define HAND_SECONDS (1.0 / 30.0) /* seconds, maximum time of an image while the user moves the camera */
+#define BUDGET_MIN (1.0 / 60.0)   /* seconds; more images per second are invisible */
+#define BUDGET_MAX (1.0 / 15.0)   /* seconds; fewer images per second are no film */
 #define REST_SECONDS 0.5          /* without an image, after which the rate is unknown */
 
 /* ---- Received data ---- */

@@ -6,7 +6,7 @@
 
 #include "play/files.h"
 
-#define MANY_FRAMES 2 /* their number is unknown; more than an image holds */
+#define MANY_FRAMES 2 /* frames: their number is unknown; more than an image holds, by definition */
 
 double adcgs_recording_now(const adcgs_recording *r)
 {

@@ -7,7 +7,7 @@
 #ifndef ADCGS_PLAY_SCALE_H
 #define ADCGS_PLAY_SCALE_H
 
-#define ADCGS_PLAY_DIVIDER_MAX 8
+#define ADCGS_PLAY_DIVIDER_MAX 8 /**< of the resolution; chosen by hand, not measured */
 
 typedef struct adcgs_play_scale {
     int divider;    /**< 1..ADCGS_PLAY_DIVIDER_MAX */

@@ -12,8 +12,9 @@
 #include <stdio.h>
 
 #define BLANKS " \t\r"
-#define SCRIPT_BYTES_MAX (1 << 20)
-#define EXPECT_TOLERANCE 1e-6
+/* Origin: chosen by hand, not measured. */
+#define SCRIPT_BYTES_MAX (1 << 20) /* of a script */
+#define EXPECT_TOLERANCE 1e-6      /* default tolerance of an expected value, in its unit */
 
 static int read_number(const char *text, double *out)
 {

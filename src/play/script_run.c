@@ -12,7 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define DRAG_STEPS 8
+/* Origin: chosen by hand, not measured. */
+#define DRAG_STEPS 8     /* movements of a drag */
 #define SIZE_SECONDS 5.0 /* maximum time for a window to change its size */
 
 /** State of a line: the next may follow when it is done. Some lines require that events are taken first. */

@@ -10,8 +10,9 @@
 
 #include <stdlib.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define SMALLEST 64      /* pixels, minimum width or height */
-#define USUAL_DPI 96.0   /* of a screen with a density of 1 */
+#define USUAL_DPI 96.0   /* dots per inch of a screen with a density of 1: usual on desktops, by definition */
 #define DENSITY_MIN 1.25 /* of screens: smaller differences from the usual one are none */
 #define DENSITY_MAX 3.0  /* screens that report more do not know their size */
 
