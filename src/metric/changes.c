@@ -9,12 +9,13 @@
 
 #include <math.h>
 
-/* Upper bound of the histogram of steps between successive images; larger steps share one more bin. */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+/* Upper bound of the histogram of steps between successive images, of values 0..1; larger steps share one more bin. */
 #define STEP_MOST 0.1F
-enum { STEP_BINS = 1000 };
-/* Largest change by noise [its standard deviations]: of most pixels, and of any single pixel. */
-#define NOISE_RANGE 5.0
-#define NOISE_ALONE 12.0
+enum { STEP_BINS = 1000 }; /* bins of the histogram */
+/* Largest change by noise [its standard deviations]. */
+#define NOISE_RANGE 5.0  /* of most pixels */
+#define NOISE_ALONE 12.0 /* of any single pixel */
 /* Multiple of `least` above which a pixel needs no changing neighbours. */
 #define ALONE 1.5
 /* Share of the mean square error below which changes are not worth modelling. */

@@ -10,9 +10,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define CORNERS 8
-#define FENCE 1.5
-#define GROWTH 1.1 /* factor of the bounds */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define CORNERS 8  /* of a box; geometry */
+#define FENCE 1.5  /* distances of the quartiles; literature: Tukey, 1977 */
+#define GROWTH 1.1 /* factor of the box's edges */
 
 /**
  * Tukey's fences: a point further from the quartiles than FENCE times their distance is an outlier. values: memory for all

@@ -8,7 +8,7 @@
 
 #include "base/base.h"
 
-#define ADCGS_CURVE_MAX 64 /**< points of a curve */
+#define ADCGS_CURVE_MAX 64 /**< points of a curve; chosen by hand, not measured */
 
 typedef struct adcgs_curve_point {
     double bytes;   /**< > 0 */

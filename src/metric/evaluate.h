@@ -11,7 +11,7 @@
 
 #include <adcgs/types.h>
 
-/** Measures in addition to PSNR and SSIM; flags. */
+/** Measures in addition to PSNR and SSIM; flags, powers of two by definition. */
 enum {
     ADCGS_MEASURE_MS_SSIM = 1,
     ADCGS_MEASURE_DYNAMIC = 2, /**< PSNR of moving regions; the flags of TIME need two passes over the true images of static

@@ -21,7 +21,7 @@ void adcgs_fit_levels(float *fitted, const float *a, const float *b, size_t n);
 /** Structural similarity: 11x11 Gaussian, sigma 1.5, zero padding, mean over pixels and channels, K1 = 0.01, K2 = 0.03. */
 adcgs_status adcgs_ssim(const float *a, const float *b, int width, int height, double *ssim, adcgs_error *error);
 
-#define ADCGS_MS_SSIM_SCALES 5
+#define ADCGS_MS_SSIM_SCALES 5 /**< scales; literature: see below */
 
 /**
  * Multi-scale structural similarity (Wang, Simoncelli and Bovik 2003): a product over five scales, with exponents 0.0448, 0.2856,

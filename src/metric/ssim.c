@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/** Wang, Simoncelli and Bovik, Multiscale structural similarity for image quality assessment, 2003. */
+/** Exponents of the scales; literature: Wang, Simoncelli and Bovik, Multiscale structural similarity, 2003. */
 static const double WEIGHTS[ADCGS_MS_SSIM_SCALES] = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
 
 /** Two planes, and the scratch memory to compare them. */

@@ -13,9 +13,10 @@
 #define RADIUS ADCGS_SSIM_RADIUS
 #define TAPS ADCGS_SSIM_TAPS
 #define MOMENTS ADCGS_SSIM_MOMENTS
-#define SIGMA 1.5 /* of the Gaussian window, pixels */
-#define C1 (0.01 * 0.01)
-#define C2 (0.03 * 0.03)
+/* Literature: Wang, Bovik, Sheikh and Simoncelli, Image quality assessment, 2004. */
+#define SIGMA 1.5        /* of the Gaussian window, pixels */
+#define C1 (0.01 * 0.01) /* squared K1, for values 0..1 */
+#define C2 (0.03 * 0.03) /* squared K2 */
 
 adcgs_status adcgs_ssim_space_init(adcgs_ssim_space *space, int width, adcgs_error *error)
 {

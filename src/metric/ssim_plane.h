@@ -8,8 +8,9 @@
 
 #include "base/base.h"
 
+/* Literature: the window of 11x11 pixels of Wang, Bovik, Sheikh and Simoncelli, 2004; moments by definition. */
 enum {
-    ADCGS_SSIM_RADIUS = 5,
+    ADCGS_SSIM_RADIUS = 5,                       /**< pixels */
     ADCGS_SSIM_TAPS = 2 * ADCGS_SSIM_RADIUS + 1, /**< width of the window */
     ADCGS_SSIM_MOMENTS = 5                       /**< a, b, aa, bb, ab */
 };

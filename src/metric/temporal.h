@@ -21,6 +21,7 @@
 
 #include "base/base.h"
 
+/* Origin: chosen by hand, not measured. */
 #define ADCGS_CHANGE_LEAST 0.1 /**< change above which a pixel counts, in the range 0..1 */
 #define ADCGS_CHANGE_NEAR 2    /**< neighbourhood of the majority, pixels */
 #define ADCGS_CHANGE_REACH 3   /**< dilation of the dynamic region, pixels */
