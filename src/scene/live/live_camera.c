@@ -14,10 +14,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1})
-#define HELD_BYTES 65536 /* capacity of a pipe */
-#define AHEAD 8          /* images after a missing one that are looked for */
-#define AHEAD_LEAST 2    /* an image may arrive before its predecessor, but not before earlier ones */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1}) /* frames per second, if no file or option states them */
+#define HELD_BYTES 65536                        /* capacity of a pipe; definition of Linux, pipe(7) */
+#define AHEAD 8                                 /* images after a missing one that are looked for */
+#define AHEAD_LEAST 2                           /* an image may arrive before its predecessor, but not before earlier ones */
 
 static adcgs_status no_memory(const adcgs_live_camera *c, adcgs_error *error)
 {

@@ -9,11 +9,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define LOOK_EVERY 20 /* milliseconds, while nothing arrives */
-#define AHEAD 3       /* stretches that are read ahead: one more than a camera may be behind another */
-#define NEAR 1e-3     /* of a frame interval: a stream's rounding moves times by less */
-#define STRETCHES_MAX 1e9
-#define HALF (0.5 + 1e-9) /* of a frame interval: among two equally near frames the first is taken */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define LOOK_EVERY 20     /* milliseconds, while nothing arrives */
+#define AHEAD 3           /* stretches that are read ahead: one more than a camera may be behind another */
+#define NEAR 1e-3         /* of a frame interval: a stream's rounding moves times by less */
+#define STRETCHES_MAX 1e9 /* stretches of a stream, at most; a uint32_t counts them */
+#define HALF (0.5 + 1e-9) /* of a frame interval: among two equally near frames the first is taken; arithmetic */
 
 /* ---- Time ---- */
 
