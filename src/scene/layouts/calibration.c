@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#define SHAPE_TOLERANCE 0.01
+#define SHAPE_TOLERANCE 0.01 /* of width or height, relative; chosen by hand, not measured */
 
 void adcgs_lens_resize(adcgs_lens *lens, int width, int height)
 {

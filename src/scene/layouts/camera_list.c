@@ -9,9 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define CAMERAS_MAX 10000
-#define FRAME_MAX 1e9
-#define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1})
+/* Origin: chosen by hand, not measured. */
+#define CAMERAS_MAX 10000                       /* of a scene */
+#define FRAME_MAX 1e9                           /* largest number of an image, and number of images */
+#define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1}) /* frames per second (doc/scene-file.md) */
 
 /* Fields of a camera; the first OWN_FIELDS cannot be shared. */
 static const char *const camera_fields[] = {"name",
@@ -46,7 +47,7 @@ static const char *const camera_fields[] = {"name",
                                             "time_offset",
                                             "split",
                                             NULL};
-#define OWN_FIELDS 6
+#define OWN_FIELDS 6 /* fields: name to video, by definition of the file */
 
 static adcgs_status read_whole(const adcgs_json_place *at, const char *field, int64_t *value)
 {

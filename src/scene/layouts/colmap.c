@@ -18,8 +18,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define TEST_EVERY 8
-#define DIVIDE_MAX 64
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define TEST_EVERY 8  /* images: one of them is for testing; literature: NeRF, 2020 */
+#define DIVIDE_MAX 64 /* largest N of images_N and rgb/Nx */
 
 typedef struct reader {
     adcgs_scene *scene;

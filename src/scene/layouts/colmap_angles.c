@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define DEGREES 57.29577951308232 /* of a radian */
+#define DEGREES 57.29577951308232 /* of a radian; definition */
 
 static int compare_centres(const void *a, const void *b)
 {

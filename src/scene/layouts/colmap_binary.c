@@ -7,6 +7,7 @@
 
 #include "scene/layouts/colmap_model.h"
 
+/* Bytes of records, by definition of COLMAP ("Output Format" of its documentation, reconstruction_io of its source). */
 #define CAMERA_BYTES 24  /* id, kind, width, height; then its parameters */
 #define IMAGE_BYTES 64   /* id, rotation, translation, camera; then its name */
 #define FEATURE_BYTES 24 /* of an image: x, y, point */

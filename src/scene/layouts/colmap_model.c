@@ -12,8 +12,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define WORLD_MAX 1e9
-#define NAME_BYTES_MAX 1000
+/* Origin: chosen by hand, not measured. */
+#define WORLD_MAX 1e9       /* largest absolute value of coordinates and parameters */
+#define NAME_BYTES_MAX 1000 /* of an image, with its folders */
 
 void adcgs_colmap_clear(adcgs_colmap *model)
 {

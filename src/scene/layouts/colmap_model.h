@@ -7,7 +7,7 @@
 #include "scene/layouts/colmap_angles.h"
 #include "scene/lens.h"
 
-#define ADCGS_COLMAP_PARAMS_MAX 12
+#define ADCGS_COLMAP_PARAMS_MAX 12 /**< numbers of a lens, at most: those of FULL_OPENCV, by definition of COLMAP */
 
 typedef struct adcgs_colmap_camera {
     uint32_t id;

@@ -8,7 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define LIST_CHECKED 4096 /* bytes of a list of points that are examined; no line of an image is as long */
+/* Bytes of a list of points that are examined; no line of an image is as long; chosen by hand, not measured. */
+#define LIST_CHECKED 4096
 
 typedef struct cursor {
     char *at;   /**< in the current line, which ends with a zero byte */

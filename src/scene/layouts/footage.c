@@ -12,9 +12,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Origin: chosen by hand, not measured. */
 #define VIEWS_MAX 1000000 /* limit of a scene's views; a view takes some hundred bytes */
-#define FIRST_CAPACITY 64
-#define GAP_MAX 1000 /* numbers that are tried after the last image of a sequence without a count */
+#define FIRST_CAPACITY 64 /* elements of an array that grows by doubling */
+#define GAP_MAX 1000      /* numbers that are tried after the last image of a sequence without a count */
 
 static adcgs_status no_memory(const char *path, adcgs_error *error)
 {

@@ -14,14 +14,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define IDS_MAX 1000000
-#define ID_BYTES_MAX 200
-#define WARP_MAX 1e9
-#define WORLD_MAX 1e9 /* largest coordinate, in files and after conversion */
-#define BEND_MAX 1e6  /* largest skew in pixels and distortion coefficient */
-#define DIVIDE_MAX 64 /* largest N of rgb/Nx */
-#define RULE_PERIOD 4 /* without val_ids, one of this many ids is for training ... */
-#define RULE_TEST 2   /* ... and the one at this offset for testing */
+#define IDS_MAX 1000000  /* names of a list; chosen by hand, not measured, as are the other bounds */
+#define ID_BYTES_MAX 200 /* of a name */
+#define WARP_MAX 1e9     /* largest frame number */
+#define WORLD_MAX 1e9    /* largest coordinate, in files and after conversion */
+#define BEND_MAX 1e6     /* largest skew in pixels and distortion coefficient */
+#define DIVIDE_MAX 64    /* largest N of rgb/Nx */
+#define RULE_PERIOD 4    /* without val_ids, one of this many ids is for training; definition: the rule of other readers ... */
+#define RULE_TEST 2      /* ... and the one at this offset for testing; definition: the same rule */
 
 typedef struct reader {
     adcgs_scene *scene;

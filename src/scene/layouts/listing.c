@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define NAMES_MAX 1000000
+#define NAMES_MAX 1000000 /* of a folder; chosen by hand, not measured */
 
 static int compare(const void *a, const void *b)
 {
@@ -93,7 +93,7 @@ void adcgs_stem(char *out, size_t size, const char *path)
         *dot = 0;
 }
 
-#define COUNTING_LEAST 3
+#define COUNTING_LEAST 3 /* names, at least: two always have one step; arithmetic */
 
 void adcgs_counting_add(adcgs_counting *counting, const char *stem)
 {

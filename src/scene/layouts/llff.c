@@ -20,12 +20,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define COLUMNS 17
-#define POSES_MAX 100000
-#define FILE_MAX ((uint64_t)POSES_MAX * COLUMNS * 8 + 65536)
-#define WORLD_MAX 1e9
-#define TEST_EVERY 8
-#define DIVIDE_MAX 64 /* largest N of images_N */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define COLUMNS 17                                           /* numbers of a row; definition of poses_bounds.npy */
+#define POSES_MAX 100000                                     /* rows */
+#define FILE_MAX ((uint64_t)POSES_MAX * COLUMNS * 8 + 65536) /* bytes: binary64, and a header */
+#define WORLD_MAX 1e9                                        /* largest absolute value of a coordinate, and largest depth */
+#define TEST_EVERY 8                                         /* images: one of them is for testing; literature: NeRF, 2020 */
+#define DIVIDE_MAX 64                                        /* largest N of images_N */
 
 typedef struct reader {
     adcgs_scene *scene;

@@ -31,13 +31,14 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-#define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1})
-#define NEAR_PER_DISTANCE 0.01
-#define DISTANCE_MIN 1e-9 /* well within a stream's range */
-#define DISTANCE_MAX 1e10
-#define FOLDERS_MOST 100   /* limit of subfolders that are searched for a scene */
-#define NEAR_PER_BOUND 0.5 /* bounds hold for most points, not for all */
-#define COLOUR_SRGB 1      /* a code of adcgs_stream */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1}) /* frames per second, of footage without a rate */
+#define NEAR_PER_DISTANCE 0.01                  /* near plane over the distance of cameras from the scene */
+#define DISTANCE_MIN 1e-9                       /* world units, well within a stream's range */
+#define DISTANCE_MAX 1e10                       /* world units, the same */
+#define FOLDERS_MOST 100                        /* limit of subfolders that are searched for a scene */
+#define NEAR_PER_BOUND 0.5                      /* near plane over the near bound: bounds hold for most points, not for all */
+#define COLOUR_SRGB 1                           /* a code of adcgs_stream (stream.h); definition */
 
 const char *const adcgs_dataset_names[ADCGS_DATASETS + 1] = {"auto",  "transforms", "hypernerf", "llff", "colmap",
                                                              "adcgs", "splats",     "panoptic",  NULL};

@@ -17,10 +17,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define WORLD_MAX 1e9
-#define TIMES_MAX 100000
-#define CAMERAS_MAX 10000
-#define POINT_COLUMNS 7 /* x, y, z, r, g, b, foreground */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define WORLD_MAX 1e9     /* largest absolute value of elements of matrices, and of coordinates */
+#define TIMES_MAX 100000  /* timestamps of a file */
+#define CAMERAS_MAX 10000 /* cameras of a timestamp */
+#define POINT_COLUMNS 7   /* x, y, z, r, g, b, foreground; definition of init_pt_cld.npz */
 
 typedef struct reader {
     adcgs_scene *scene;

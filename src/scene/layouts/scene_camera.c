@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#define WORLD_MAX 1e9
+#define WORLD_MAX 1e9 /* largest absolute value of a number, in world units or pixels; chosen by hand, not measured */
 
 adcgs_status adcgs_scene_camera_fields(const adcgs_json_place *at, const char *prefix, json_t *object, const char *const *known)
 {

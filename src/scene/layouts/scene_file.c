@@ -10,8 +10,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define FILE_VERSION 1
-#define UNIT_METRE 1 /* a code of adcgs_stream */
+/* Origin: definition. */
+#define FILE_VERSION 1 /* of adcgs scene files (doc/scene-file.md) */
+#define UNIT_METRE 1   /* a code of adcgs_stream (stream.h) */
 
 static const char *const root_fields[] = {"adcgs_scene",  "name",  "frame_rate",   "scale",    "unit",    "up", "points",
                                           "points_scale", "sound", "sound_offset", "defaults", "cameras", NULL};

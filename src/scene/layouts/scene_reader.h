@@ -6,7 +6,7 @@
 #include "scene/layouts/scene_file.h"
 #include "system/paths.h"
 
-#define ADCGS_SCENE_WORLD_MAX 1e9 /**< of a coordinate, in world units */
+#define ADCGS_SCENE_WORLD_MAX 1e9 /**< of a coordinate, in world units; chosen by hand, not measured */
 
 /** A scene file that is being read. */
 typedef struct adcgs_scene_reader {

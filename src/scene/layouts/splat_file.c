@@ -12,16 +12,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define OPACITY_MAX 0.99f             /* largest opacity of a primitive */
-#define OPACITY_LEAST (1.0f / 255.0f) /* fainter splats are not rendered */
-#define POINT_OPACITY 0.1f
-#define INSIDE 0.95                   /* share of the splats within the radius */
-#define HALF_FIELD 0.4363323129985824 /* 25 degrees, between the optical axis and the middle of an edge of the view */
-#define SHELLS 2
-#define GOLDEN_ANGLE 2.399963229728653
-#define RADIUS_MIN 1e-9
-#define RADIUS_MAX 1e9
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define OPACITY_MAX 0.99f              /* largest opacity of a primitive; definition of the bitstream */
+#define OPACITY_LEAST (1.0f / 255.0f)  /* fainter splats are not rendered; definition of the bitstream */
+#define POINT_OPACITY 0.1f             /* least opacity of a splat that becomes a point */
+#define INSIDE 0.95                    /* share of the splats within the radius */
+#define HALF_FIELD 0.4363323129985824  /* radians: 25 degrees, between the optical axis and the middle of an edge of the view */
+#define SHELLS 2                       /* distances of cameras */
+#define GOLDEN_ANGLE 2.399963229728653 /* radians, pi (3 - sqrt(5)); geometry */
+#define RADIUS_MIN 1e-9                /* world units */
+#define RADIUS_MAX 1e9                 /* world units */
 
+/* Cameras for training, validation and testing; chosen by hand, not measured. */
 static const uint32_t n_views[ADCGS_SPLITS] = {100, 10, 20};
 
 /* ---- Region of the splats ---- */

@@ -10,7 +10,7 @@
 
 #include "scene/scene.h"
 
-#define ADCGS_SPLAT_SCENE_SIZE 400 /**< width and height of the views */
+#define ADCGS_SPLAT_SCENE_SIZE 400 /**< pixels, width and height of the views; chosen by hand, not measured */
 
 /**
  * Fills the scene: 100 views for training, 10 for validation, 20 for testing, without near planes, and scene->splats. With

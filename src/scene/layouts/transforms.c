@@ -16,8 +16,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define TEST_EVERY 8
-#define TIME_MAX 1e20 /* largest magnitude of a time: nanoseconds since 1970 are below */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define TEST_EVERY 8  /* frames: one of them is for testing; literature: NeRF, 2020 */
+#define TIME_MAX 1e20 /* largest magnitude of a time, in units of the file: nanoseconds since 1970 are below */
 
 typedef struct place {
     adcgs_json_place json;
@@ -101,7 +102,7 @@ static adcgs_status fit_size(const place *at, const adcgs_scene_view *view, adcg
     return ADCGS_OK;
 }
 
-#define ANGLE_SLACK 0.1 /* tolerance, relative to the focal length */
+#define ANGLE_SLACK 0.1 /* tolerance, relative to the focal length; chosen by hand, not measured */
 
 /** Checks that camera_angle_x, which programs for Blender's scenes use, agrees with fl_x, which others use, if both are given. */
 static adcgs_status check_angle(const place *at, const adcgs_lens *lens)

@@ -13,9 +13,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Origin: chosen by hand, not measured. */
 #define TIME_SLACK 1e-6 /* largest excess beyond 0 and 1, for rounding of binary32 times */
-#define FPS_LEAST 1.0   /* lowest rate that is suggested */
-#define FPS_MOST 1000.0
+#define FPS_LEAST 1.0   /* frames per second: lowest rate that is suggested */
+#define FPS_MOST 1000.0 /* frames per second: highest rate that is suggested */
 
 typedef struct listed {
     const adcgs_scene_view *view;

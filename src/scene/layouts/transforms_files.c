@@ -8,8 +8,9 @@
 
 #include <stdlib.h>
 
-#define DIVIDE_MAX 64
-#define PARTS_MOST 3 /* last parts of an absolute path that are searched below the folder */
+/* Origin: chosen by hand, not measured. */
+#define DIVIDE_MAX 64 /* largest N of images_N and masks_N */
+#define PARTS_MOST 3  /* last parts of an absolute path that are searched below the folder */
 
 char *adcgs_transforms_join(const char *folder, const char *name)
 {

@@ -4,7 +4,7 @@
 
 #include "scene/layouts/view_lens.h"
 
-#define LATEST 64 /* views of a split that are compared: as many as a rig has cameras */
+#define LATEST 64 /* views of a split that are compared: as many as a rig has cameras; chosen by hand, not measured */
 
 static const adcgs_scene_view *find_same(const adcgs_scene *scene, const adcgs_scene_view *view)
 {
