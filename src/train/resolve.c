@@ -3,6 +3,7 @@
 #include "train/resolve.h"
 
 #include "train/rate/rate_plan.h"
+#include "train/stage_table.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -16,6 +17,9 @@
 #define SQUARE_ALONE 0.5f
 /* Of max_anchors, if there are points; calibrated on llff_fern and zju313_15f (doc/log/initialisation.md). */
 #define START_SHARE 0.75
+
+/* Densification intervals per trial; chosen by hand, not measured. */
+#define TRIAL_DENSIFICATIONS 20
 
 static const char *const deciders[ADCGS_DECIDERS] =
     {[ADCGS_BY_PRESET] = "preset", [ADCGS_BY_USER] = "user",     [ADCGS_BY_SCENE] = "scene",   [ADCGS_BY_MATCHING] = "matching",
@@ -78,6 +82,24 @@ void adcgs_resolve_trials(adcgs_train_config *c, const uint8_t dropped[ADCGS_MEC
     for (int m = 0; m < ADCGS_MECHANISMS; m++)
         if (dropped[m])
             decide(c, adcgs_mechanism_settings[m], 0, ADCGS_BY_TRIAL, "held-back images are better without it");
+}
+
+void adcgs_resolve_trial(adcgs_train_config *c, const adcgs_trial_facts *f)
+{
+    static const char is_short[] = "a trial is a short run", is_small[] = "a trial uses small images";
+    c->time_limit = 0;
+    c->target = ADCGS_TARGET_NONE;
+    decide(c, "iterations", f->iterations, ADCGS_BY_TRIAL, is_short);
+    decide(c, "densify_interval", ADCGS_MAX(f->iterations / TRIAL_DENSIFICATIONS, 1), ADCGS_BY_TRIAL, is_short);
+    decide(c, "batch", 1, ADCGS_BY_TRIAL, is_short);
+    decide(c, "tiers", 1, ADCGS_BY_TRIAL, "a trial writes no stream");
+    decide(c, "seed", (double)f->seed, ADCGS_BY_TRIAL, "a second trial needs another seed");
+    if (f->reduction >= 1) {
+        decide(c, "scale", fmin(c->scale * f->reduction, adcgs_setting_find("scale")->max), ADCGS_BY_TRIAL, is_small);
+        decide(c, "half_size_until", ADCGS_STAGE_NEVER, ADCGS_BY_TRIAL, is_small);
+    }
+    if (f->without >= 0)
+        decide(c, adcgs_mechanism_settings[f->without], 0, ADCGS_BY_TRIAL, "this trial leaves it out");
 }
 
 void adcgs_resolve_parts(adcgs_train_config *c, uint32_t times)

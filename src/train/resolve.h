@@ -16,6 +16,15 @@
 void adcgs_resolve_size(adcgs_train_config *config, int divisor);
 /** Verdicts of trials: the mechanisms that lost are off, also if the user gave their settings. */
 void adcgs_resolve_trials(adcgs_train_config *config, const uint8_t dropped[ADCGS_MECHANISMS]);
+/** Facts of a trial (trial.h). */
+typedef struct adcgs_trial_facts {
+    int without;         /**< adcgs_mechanism that it leaves out, or ADCGS_MECHANISM_NONE */
+    uint32_t iterations; /**< at least 1 */
+    uint64_t seed;
+    int reduction; /**< images are reduced by this factor, and by half for the whole run; less than 1: as requested */
+} adcgs_trial_facts;
+/** A trial: a short run on small images, without a target or a time limit. It replaces values that the user gave, too. */
+void adcgs_resolve_trial(adcgs_train_config *config, const adcgs_trial_facts *facts);
 /** Segments share their parameters: all time tables have at most as many rows as the shortest part has timestamps. */
 void adcgs_resolve_parts(adcgs_train_config *config, uint32_t times);
 /** One segment of a whole scene gets the iterations of all its parts. */

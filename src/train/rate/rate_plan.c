@@ -22,8 +22,8 @@ enum {
 #define LAMBDA_FIRST 0.1f   /* initial lambda of a search */
 #define ANCHORS_GROWTH 4    /* maximum factor by which a large size raises a preset's budget */
 
-/** Number of weights of all networks under a configuration. */
-static adcgs_status count_weights(const adcgs_train_config *c, size_t *weights, adcgs_error *error)
+/** Number of weights of all networks of a shape. */
+static adcgs_status count_weights(const adcgs_train_config *c, const adcgs_shape *shape, size_t *weights, adcgs_error *error)
 {
     static const float origin[3];
     static const uint32_t place[1][3];
@@ -31,7 +31,7 @@ static adcgs_status count_weights(const adcgs_train_config *c, size_t *weights, 
     adcgs_fmodel *f;
     *weights = 0;
     params.bodies = 0; /* not known yet, and few scenes have the maximum number */
-    ADCGS_TRY(adcgs_fmodel_create(&f, &params, &c->shape, origin, 1, place, 1, 0, error));
+    ADCGS_TRY(adcgs_fmodel_create(&f, &params, shape, origin, 1, place, 1, 0, error));
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         *weights += f->mlp[i].n;
     adcgs_fmodel_free(&f);
@@ -53,19 +53,19 @@ static adcgs_status plan_networks(adcgs_rate_plan *plan, const adcgs_train_confi
     const double room = has_anchors ? config->target_value - OTHER_BYTES - (double)config->max_anchors * ANCHOR_BITS / 8 : 0;
     /* Widths tried, relative to the request; chosen by hand, not measured. */
     static const double factors[] = {1, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125};
-    adcgs_train_config c = *config;
+    adcgs_shape shape = config->shape;
     for (size_t i = 0; i < ADCGS_COUNTOF(factors); i++) {
         size_t weights;
-        c.shape.theta_width = narrower(config->shape.theta_width, factors[i]);
-        c.shape.omega_width = narrower(config->shape.omega_width, factors[i]);
-        c.shape.varpi_width = narrower(config->shape.varpi_width, factors[i]);
-        c.shape.entropy_width = narrower(config->shape.entropy_width, factors[i]);
-        ADCGS_TRY(count_weights(&c, &weights, error));
-        *bytes = (adcgs_train_prunes_units(&c) ? UNITS_STAY : 1) * (double)weights * ADCGS_WEIGHT_BITS / 8;
+        shape.theta_width = narrower(config->shape.theta_width, factors[i]);
+        shape.omega_width = narrower(config->shape.omega_width, factors[i]);
+        shape.varpi_width = narrower(config->shape.varpi_width, factors[i]);
+        shape.entropy_width = narrower(config->shape.entropy_width, factors[i]);
+        ADCGS_TRY(count_weights(config, &shape, &weights, error));
+        *bytes = (adcgs_train_prunes_units(config) ? UNITS_STAY : 1) * (double)weights * ADCGS_WEIGHT_BITS / 8;
         if (has_networks || *bytes <= fmax(share, room))
             break;
     }
-    plan->shape = c.shape;
+    plan->shape = shape;
     return ADCGS_OK;
 }
 

@@ -4,7 +4,8 @@
 #define ADCGS_TRAIN_TRIAL_MECHANISMS_H
 
 typedef enum adcgs_mechanism {
-    ADCGS_MATCHING,
+    ADCGS_MECHANISM_NONE = -1,
+    ADCGS_MATCHING = 0,
     ADCGS_GAINS,
     ADCGS_BLACK_LEVELS,
     ADCGS_LIFETIMES,

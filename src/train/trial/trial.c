@@ -3,6 +3,7 @@
 #include "train/trial/trial.h"
 
 #include "metric/metric.h"
+#include "train/resolve.h"
 #include "train/settings.h"
 #include "train/start_points.h"
 #include "train/train_views.h"
@@ -16,11 +17,9 @@
 #include <string.h>
 
 /* Origin, unless a line states one: chosen by hand, not measured. */
-enum { NONE = -1 }; /* no mechanism is left out; definition */
 enum {
     ITERATIONS_LEAST = 100, /* minimum iterations of a trial */
-    ITERATIONS_MOST = 600,  /* maximum iterations of a trial */
-    DENSIFICATIONS = 20     /* densification intervals per trial */
+    ITERATIONS_MOST = 600   /* maximum iterations of a trial */
 };
 #define VIEWS_PER_FRAME 3 /* for densification from residuals, which needs as many views of a frame */
 /* Approximate pixels of a trial's images; enough to see a motion of 1/100 of the image; chosen by hand, not measured. */
@@ -100,30 +99,12 @@ typedef struct trials {
     int has_second;
 } trials;
 
-/** Reduces the images of a trial: by an integer, and by half for the whole run. */
-static void shrink(adcgs_train_config *c, const adcgs_scene *scene)
+/** Returns the factor by which a trial reduces the images at the end of its run; 0: they are small. */
+static int find_reduction(const adcgs_train_config *c, const adcgs_scene *scene)
 {
     const adcgs_camera *camera = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
     const double pixels = (double)camera->width * camera->height / ((double)c->scale * c->scale);
-    const int half = (int)(sqrt(pixels / PIXELS) / 2 + 0.4);
-    if (half < 1)
-        return;
-    c->scale = ADCGS_MIN(c->scale * half, 64);
-    c->half_size_until = 2;
-}
-
-static adcgs_train_config trial_config(const adcgs_train_config *config, const adcgs_scene *scene, uint64_t seed)
-{
-    adcgs_train_config c = *config;
-    c.iterations = adcgs_trial_length(config);
-    c.densify_interval = ADCGS_MAX(c.iterations / DENSIFICATIONS, 1);
-    c.time_limit = 0;
-    c.target = ADCGS_TARGET_NONE;
-    c.batch = 1;
-    c.tiers = 1;
-    c.seed = seed;
-    shrink(&c, scene);
-    return c;
+    return (int)(sqrt(pixels / PIXELS) / 2 + 0.4);
 }
 
 /** PSNR of a view, after a fit of gain and black level to the image if gains apply. */
@@ -195,16 +176,19 @@ static uint32_t judges_of(const trials *r)
     return r->scene->n_views[ADCGS_SPLIT_VAL];
 }
 
-/** Runs without a mechanism (NONE: with all), with the first or the second seed. */
+/** Runs without a mechanism (ADCGS_MECHANISM_NONE: with all), with the first or the second seed. */
 static adcgs_status try_without(trials *r, int mechanism, int second, score *out, adcgs_error *error)
 {
-    const char *const name = mechanism == NONE ? NULL : adcgs_mechanism_names[mechanism];
-    adcgs_train_config c = trial_config(r->config, r->scene, r->config->seed + (uint64_t)second);
+    const char *const name = mechanism == ADCGS_MECHANISM_NONE ? NULL : adcgs_mechanism_names[mechanism];
+    const adcgs_trial_facts facts = {.without = mechanism,
+                                     .iterations = adcgs_trial_length(r->config),
+                                     .seed = r->config->seed + (uint64_t)second,
+                                     .reduction = find_reduction(r->config, r->scene)};
+    adcgs_train_config c = *r->config;
     if (r->o->progress && r->o->progress(r->o->user, name, r->done, ADCGS_MECHANISMS + 1))
         return adcgs_fail(error, ADCGS_ERR_IO, "interrupted during the trials of mechanisms");
     r->done++;
-    if (name)
-        ADCGS_TRY(adcgs_train_set_value(&c, adcgs_mechanism_settings[mechanism], 0, error));
+    adcgs_resolve_trial(&c, &facts);
     return run_trial(out, &c, r, !name && !second, error);
 }
 
@@ -230,7 +214,7 @@ static adcgs_status ask_again(trials *r, int mechanism, adcgs_trial *t, adcgs_er
     const uint32_t n = judges_of(r);
     score without;
     if (!r->has_second)
-        ADCGS_TRY(try_without(r, NONE, 1, &r->base[1], error));
+        ADCGS_TRY(try_without(r, ADCGS_MECHANISM_NONE, 1, &r->base[1], error));
     r->has_second = 1;
     ADCGS_TRY(try_without(r, mechanism, 1, &without, error));
     t->dropped = is_better(&without, &r->base[1], n);
@@ -247,7 +231,7 @@ static int is_on(const adcgs_train_config *config, int mechanism)
 static adcgs_status try_all(trials *r, adcgs_trials *out, adcgs_error *error)
 {
     const uint32_t n = judges_of(r);
-    ADCGS_TRY(try_without(r, NONE, 0, &r->base[0], error));
+    ADCGS_TRY(try_without(r, ADCGS_MECHANISM_NONE, 0, &r->base[0], error));
     for (int m = 0; m < ADCGS_MECHANISMS; m++) {
         score without;
         if (!r->base[0].applies[m] || !is_on(r->config, m))

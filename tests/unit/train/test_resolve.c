@@ -133,6 +133,36 @@ static void verdicts_and_matching_are_recorded(void **state)
     assert_int_equal(count_records(&c), 5);
 }
 
+/** A trial replaces given values, too. Its request keeps its own, and its record starts from the record of the whole run. */
+static void trials_are_recorded(void **state)
+{
+    adcgs_trial_facts facts = {.without = ADCGS_GAINS, .iterations = 410, .seed = 8, .reduction = 30};
+    adcgs_train_config c = request("iterations=5000,gains=1,seed=7,batch=2");
+    adcgs_resolve_size(&c, 3);
+    c.target = ADCGS_TARGET_PSNR;
+    c.target_value = 30;
+    c.time_limit = 9;
+    const adcgs_train_config before = c;
+    adcgs_resolve_trial(&c, &facts);
+    assert_true(c.target == ADCGS_TARGET_NONE && c.time_limit == 0);
+    expect_record(&c, "iterations", 5000, 410, "trial");
+    expect_record(&c, "densify_interval", 100, 20, "trial");
+    expect_record(&c, "batch", 2, 1, "trial");
+    expect_record(&c, "tiers", 4, 1, "trial");
+    expect_record(&c, "seed", 7, 8, "trial");
+    expect_record(&c, "scale", 1, 64, "trial"); /* at most the maximum of the setting */
+    expect_record(&c, "half_size_until", (double)0.7f, 2, "trial");
+    expect_record(&c, "gains", 1, 0, "trial");
+    assert_int_equal(count_records(&c), 8);
+    assert_int_equal(adcgs_train_check(&c, &error), ADCGS_OK);
+    c = before;
+    facts = (adcgs_trial_facts){.without = ADCGS_MECHANISM_NONE, .iterations = 15, .seed = 7, .reduction = 0};
+    adcgs_resolve_trial(&c, &facts);
+    assert_true(c.densify_interval == 1 && c.gains == 1 && c.half_size_until == 0.7f);
+    expect_record(&c, "scale", 1, 3, "scene");
+    assert_null(find(&c, "seed"));
+}
+
 static void targets_are_recorded(void **state)
 {
     adcgs_train_config c = request("theta_width=31");
@@ -169,7 +199,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenes_decide_what_is_open), cmocka_unit_test(given_values_stay),
         cmocka_unit_test(anchors_follow_details),     cmocka_unit_test(verdicts_and_matching_are_recorded),
-        cmocka_unit_test(targets_are_recorded),       cmocka_unit_test(effort_comes_and_goes),
+        cmocka_unit_test(trials_are_recorded),        cmocka_unit_test(targets_are_recorded),
+        cmocka_unit_test(effort_comes_and_goes),
     };
     return cmocka_run_group_tests_name("resolve", tests, NULL, NULL);
 }
