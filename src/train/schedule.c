@@ -62,19 +62,23 @@ double adcgs_train_lambda_from(const adcgs_train_config *c)
 
 int adcgs_train_prunes_units(const adcgs_train_config *c)
 {
-    const double first = (double)c->prune_units_at, again = (double)c->prune_units_again;
-    return !c->without_rate && first < 1 && (again < 1 ? fmax(first, again) : first) * c->iterations >= ADCGS_UNITS_AFTER;
+    const double first = adcgs_stage_begin(c, ADCGS_STAGE_PRUNE_UNITS),
+                 again = adcgs_stage_begin(c, ADCGS_STAGE_PRUNE_UNITS_AGAIN);
+    return first < 1 && (again < 1 ? again : first) * c->iterations >= ADCGS_UNITS_AFTER;
 }
 
 const char *adcgs_train_stage(const adcgs_train_config *c, double progress)
 {
-    if (progress < c->deform_start)
-        return "canonical";
-    if (progress < c->quant_noise_start)
-        return "deform";
-    if (progress < c->rate_start)
-        return "noise";
-    if (progress < c->quant_round_start)
-        return "rate";
-    return progress < c->freeze_start ? "round" : "networks";
+    static const struct {
+        adcgs_stage stage;
+        const char *name;
+    } last_first[] = {{ADCGS_STAGE_FREEZE, "networks"},
+                      {ADCGS_STAGE_ROUND, "round"},
+                      {ADCGS_STAGE_RATE, "rate"},
+                      {ADCGS_STAGE_NOISE, "noise"},
+                      {ADCGS_STAGE_COARSE, "deform"}};
+    for (size_t i = 0; i < ADCGS_COUNTOF(last_first); i++)
+        if (adcgs_stage_has_begun(c, last_first[i].stage, progress))
+            return last_first[i].name;
+    return "canonical";
 }

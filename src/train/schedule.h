@@ -21,7 +21,7 @@ int adcgs_train_prunes_units(const adcgs_train_config *config);
 /** Progress from which lambda affects the run; greater than 1: never. */
 double adcgs_train_lambda_from(const adcgs_train_config *config);
 
-/** Name of the stage at a progress in [0,1], for display and log. */
+/** Name of the last of the main stages that has begun at a progress in [0,1], for display and log; see stage_table.h. */
 const char *adcgs_train_stage(const adcgs_train_config *config, double progress);
 
 #endif

@@ -5,6 +5,7 @@
 #include "base/digest.h"
 #include "metric/metric.h"
 #include "train/rate/rate_search.h"
+#include "train/stage_table.h"
 #include "train/stages.h"
 #include "train/step.h"
 
@@ -162,8 +163,9 @@ adcgs_status adcgs_trainer_finish(adcgs_trainer *t, adcgs_train_report *report, 
 
 int adcgs_trainer_moves(const adcgs_trainer *t)
 {
-    return t->f->follows || t->stereo.n_bodies || t->scene->n_times < 2 || t->config.deform_start >= 1 ||
-           (t->config.without_coarse && t->config.without_fine) || adcgs_trainer_progress(t) >= (double)t->config.deform_start;
+    return t->f->follows || t->stereo.n_bodies || t->scene->n_times < 2 ||
+           adcgs_stage_begin(&t->config, ADCGS_STAGE_COARSE) >= 1 || (t->config.without_coarse && t->config.without_fine) ||
+           adcgs_stage_has_begun(&t->config, ADCGS_STAGE_COARSE, adcgs_trainer_progress(t));
 }
 
 /** Updates the elapsed time. With a time limit all runs of a team use the time of rank 0, so that progress is the same. */

@@ -6,6 +6,7 @@
 #include "training_runs.h"
 
 #include "encode/quantise.h"
+#include "train/schedule.h"
 #include "train/stage_table.h"
 
 #include <math.h>
@@ -77,6 +78,28 @@ static void stages_follow_their_settings(void **state)
     c.without_densification = 1;
     assert_false(adcgs_stage_lasts(&c, ADCGS_STAGE_DENSIFY, 0.2) || adcgs_stage_has_begun(&c, ADCGS_STAGE_PRUNE, 1) ||
                  adcgs_stage_has_begun(&c, ADCGS_STAGE_STATIC_ANCHORS, 1));
+}
+
+/** The name of a stage is displayed from the stage's begin on, and a stage that is left out has none. */
+static void displayed_stages_follow_the_table(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"canonical", "deform", "noise", "rate", "round", "networks"};
+    static const adcgs_stage stages[] = {ADCGS_STAGE_COARSE, ADCGS_STAGE_NOISE, ADCGS_STAGE_RATE, ADCGS_STAGE_ROUND,
+                                         ADCGS_STAGE_FREEZE};
+    adcgs_train_config c;
+    assert_int_equal(adcgs_train_preset(&c, "fast", &error), ADCGS_OK);
+    assert_string_equal(adcgs_train_stage(&c, 0), names[0]);
+    for (size_t i = 0; i < ADCGS_COUNTOF(stages); i++) {
+        const double begin = adcgs_stage_begin(&c, stages[i]);
+        assert_string_equal(adcgs_train_stage(&c, nextafter(begin, 0)), names[i]);
+        assert_string_equal(adcgs_train_stage(&c, begin), names[i + 1]);
+    }
+    c.without_rate = 1;
+    assert_string_equal(adcgs_train_stage(&c, nextafter((double)c.quant_round_start, 0)), "deform");
+    assert_string_equal(adcgs_train_stage(&c, 1), "networks");
+    c.without_rounding = 1;
+    assert_string_equal(adcgs_train_stage(&c, 1), "deform");
 }
 
 /** The mean of three states, exact to the bit where the states agree. A model of another size starts a mean of its own. */
@@ -303,11 +326,17 @@ static void time_limits_count_what_was_before(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stages_follow_their_settings), cmocka_unit_test(windows_grow_outwards),
-        cmocka_unit_test(averages_are_means),           cmocka_unit_test(moments_shared_by_views_change_settings),
-        cmocka_unit_test(few_cameras_make_time_smooth), cmocka_unit_test(rates_stay_then_fall),
-        cmocka_unit_test(rates_follow_their_kind),      cmocka_unit_test(time_left_follows_the_schedule),
-        cmocka_unit_test(time_left_knows_loading),      cmocka_unit_test(time_limits_count_what_was_before),
+        cmocka_unit_test(stages_follow_their_settings),
+        cmocka_unit_test(displayed_stages_follow_the_table),
+        cmocka_unit_test(windows_grow_outwards),
+        cmocka_unit_test(averages_are_means),
+        cmocka_unit_test(moments_shared_by_views_change_settings),
+        cmocka_unit_test(few_cameras_make_time_smooth),
+        cmocka_unit_test(rates_stay_then_fall),
+        cmocka_unit_test(rates_follow_their_kind),
+        cmocka_unit_test(time_left_follows_the_schedule),
+        cmocka_unit_test(time_left_knows_loading),
+        cmocka_unit_test(time_limits_count_what_was_before),
     };
     return cmocka_run_group_tests_name("schedule", tests, open_scene, close_scene);
 }
