@@ -109,6 +109,10 @@ enc threads --iterations $n --threads 3 --resume "$dir/late" --log "$dir/stop.lo
 same one threads "another stream after an interrupt, with other threads"
 json "$dir/stop.log" || bad "the log of both parts is not JSON"
 grep -q "\"iteration\":$n," "$dir/stop.log" || bad "the log was not continued"
+# The resumed run has the same record of settings, also of lambda, which depends on the images.
+[ "$(grep -c '"stage":"settings".*"setting":"lambda"' "$dir/stop.log")" -eq 2 ] &&
+    [ "$(sed -n 's/.*"stage":"settings".*"changes"://p' "$dir/stop.log" | uniq | wc -l)" -eq 1 ] ||
+    { bad "another record of settings after an interrupt"; cat "$dir/stop.log"; }
 grep '"divide":0' "$dir/stop.log" && bad "a log without resolution"
 
 # If a checkpoint cannot be written, neither the run nor the old checkpoint is lost: the program reports it once, and continues.

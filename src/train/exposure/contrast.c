@@ -35,10 +35,21 @@ adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_erro
     return ADCGS_OK;
 }
 
+static double find_lambda(adcgs_trainer *t)
+{
+    return adcgs_resolve_contrast(&t->config, fmin(fmax(t->rate.contrast / ADCGS_CONTRAST_NOMINAL, LEAST), MOST));
+}
+
+void adcgs_contrast_record(adcgs_trainer *t)
+{
+    if (t->rate.contrast > 0)
+        find_lambda(t);
+}
+
 adcgs_status adcgs_contrast_lambda(adcgs_trainer *t, adcgs_error *error)
 {
     if (!(t->rate.contrast > 0))
         ADCGS_TRY(adcgs_contrast(t, &t->rate.contrast, error));
-    t->rate.lambda = adcgs_resolve_contrast(&t->config, fmin(fmax(t->rate.contrast / ADCGS_CONTRAST_NOMINAL, LEAST), MOST));
+    t->rate.lambda = find_lambda(t);
     return ADCGS_OK;
 }

@@ -25,5 +25,7 @@ adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_erro
  * the contrast, which then stays.
  */
 adcgs_status adcgs_contrast_lambda(adcgs_trainer *t, adcgs_error *error);
+/** Records the lambda that a restored run began with, from its stored contrast, and leaves the run's lambda. */
+void adcgs_contrast_record(adcgs_trainer *t);
 
 #endif

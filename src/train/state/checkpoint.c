@@ -6,6 +6,7 @@
 #include "scene/content.h"
 #include "system/atomic.h"
 #include "system/file.h"
+#include "train/exposure/contrast.h"
 #include "train/state/checkpoint_walk.h"
 #include "train/trial/mechanisms.h"
 
@@ -75,6 +76,7 @@ static adcgs_status restore_file(adcgs_trainer *t, const uint8_t *data, size_t s
         return adcgs_fail(error, ADCGS_ERR_DATA, "damaged: its checksum does not match");
     static const uint8_t unknown[sizeof t->views.content];
     ADCGS_TRY(adcgs_trainer_restore(t, data + head, size - 4 - head, error));
+    adcgs_contrast_record(t);                                  /* the other records follow from request, scene and trials */
     if (!memcmp(data + sizeof magic, unknown, sizeof unknown)) /* a failed run did not read the images */
         return ADCGS_OK;
     ADCGS_TRY(find_content(t, error));
