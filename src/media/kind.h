@@ -10,8 +10,8 @@
 
 #include "base/base.h"
 
-#define ADCGS_KIND_BYTES 4096 /**< bytes examined at the beginning of a file */
-#define ADCGS_KIND_TAIL 32    /**< bytes examined at its end */
+#define ADCGS_KIND_BYTES 4096 /**< bytes examined at the beginning of a file; chosen by hand, not measured */
+#define ADCGS_KIND_TAIL 32    /**< bytes examined at its end; definition (length of the magic at the end of Insta360's files) */
 
 /** The content of a file. */
 typedef enum adcgs_kind_class {

@@ -9,10 +9,11 @@
 
 #include <stdlib.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define TAG_MAX 2048         /* bytes of a start tag: its name is that of a file */
 #define MARKS 1024           /* stored positions of letters */
 #define NOWHERE UINT64_MAX   /* as `next`: the next read goes to a stored position */
-#define FIRST_STRIDE 0x10000 /* letters between them; doubled when all are in use */
+#define FIRST_STRIDE 0x10000 /* letters between two marks; doubled when all are in use */
 
 struct adcgs_page_stream {
     FILE *file;

@@ -13,10 +13,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define MAGIC_BYTES 6
-#define DIMENSIONS_MAX 4
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define MAGIC_BYTES 6                 /* bytes before the version; definition (numpy.lib.format) */
+#define DIMENSIONS_MAX 4              /* dimensions of an array */
 #define COUNT_MAX ((uint64_t)1 << 40) /* upper bound of one dimension; no file is that large */
 
+/* Bits of the keys that the header had; definition, the keys are those of numpy.lib.format. */
 enum { SEEN_DESCR = 1, SEEN_ORDER = 2, SEEN_SHAPE = 4, SEEN_ALL = 7 };
 
 typedef struct reader {

@@ -6,7 +6,8 @@
 
 #include <openexr.h>
 
-#define ASPECT_MIN 1e-6 /* smallest pixel aspect ratio that the library accepts; the largest is its inverse */
+/* Smallest pixel aspect ratio that the library accepts; the largest is its inverse. Definition (checks of OpenEXR). */
+#define ASPECT_MIN 1e-6
 
 /** A channel and the place of its samples; the file sorts channels alphabetically. */
 typedef struct plane {

@@ -15,7 +15,7 @@
 
 #include <adcgs/types.h>
 
-#define ADCGS_IMAGE_MAX 16384 /**< largest width and height */
+#define ADCGS_IMAGE_MAX 16384 /**< largest width and height, pixels; definition (the specification's largest camera) */
 
 /**
  * Pixels as binary32, interleaved [height][width][channels], values as stored (8 bit: v/255), in sRGB. Reading converts linear

@@ -14,11 +14,13 @@
 
 #include <turbojpeg.h>
 
-#define QUALITY 95
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define QUALITY 95                   /* of libjpeg's scale, 1 to 100, where the caller gives none */
 #define FILE_MAX ((uint64_t)1 << 30) /* bytes of a file that is read */
 
 /* ---- Markers ---- */
 
+/* Bytes of markers: MARKER, then one of the others; definition (ITU-T T.81, B.1.1 and Table B.1). */
 enum {
     STUFFED = 0x00,
     TEM = 0x01,

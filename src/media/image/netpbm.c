@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-#define NUMBER_MAX 99999999
+#define NUMBER_MAX 99999999 /* largest number of a header; chosen by hand, not measured */
 
 typedef struct header {
     int width, height, channels, maximum;

@@ -9,9 +9,9 @@
 #include <ctype.h>
 #include <stdlib.h>
 
-#define BYTES_MOST ((size_t)256 << 10) /* examined at the beginning: metadata precede the image */
+#define BYTES_MOST ((size_t)256 << 10) /* examined at the beginning: metadata precede the image; chosen by hand, not measured */
 
-/* Segments of a JPEG (ITU-T T.81, Annex B): a marker, then a length that includes itself. */
+/* Segments of a JPEG (definition: ITU-T T.81, Annex B): a marker, then a length that includes itself. */
 #define APP1 0xe1 /* EXIF, and XMP with a name before its packet */
 #define SOS 0xda  /* the image follows */
 

@@ -5,7 +5,7 @@
 
 #include "base/base.h"
 
-#define ADCGS_PANORAMA_NAME 24
+#define ADCGS_PANORAMA_NAME 24 /**< bytes of a projection's name, with its zero; chosen by hand, not measured */
 
 /**
  * The projection that a JPEG declares, "equirectangular" for all that surrounds a camera: GPano:ProjectionType in a packet of

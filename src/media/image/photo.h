@@ -9,7 +9,7 @@ extern "C" {
 
 #include "media/image/image.h"
 
-#define ADCGS_PHOTO_UPRIGHT 1
+#define ADCGS_PHOTO_UPRIGHT 1 /**< orientation of an image that needs no turn; definition (EXIF, tag 274) */
 
 typedef struct adcgs_photo {
     int width, height; /**< as stored */

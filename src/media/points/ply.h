@@ -9,6 +9,7 @@
 
 #include "base/base.h"
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define ADCGS_PLY_PROPERTIES 1024 /**< maximum number per element; splats with features have hundreds */
 #define ADCGS_PLY_BEFORE 8        /**< maximum number of elements before the vertices */
 

@@ -8,7 +8,8 @@
 
 enum { X, Y, Z, RED, GREEN, BLUE, ROLES, DC = ROLES }; /* DC, DC + 1, DC + 2: colours of splats */
 
-#define BRIGHT 8.0 /* largest value, relative to white at 1, of float colours; larger ones mean that 255 is white */
+/* Largest value of float colours, relative to white at 1; larger ones mean that 255 is white. Chosen by hand, not measured. */
+#define BRIGHT 8.0
 
 typedef struct taker {
     adcgs_points *points;

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define ROUND_LOOKS 1001 /* number of points that estimate the cloud's position and size */
 #define ROUND_FAR 64.0   /* distance from the origin over the size, above which 24 bits of a coordinate are too few */
 

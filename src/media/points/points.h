@@ -9,7 +9,7 @@ extern "C" {
 
 #include "base/base.h"
 
-#define ADCGS_POINTS_MAX (1u << 26)
+#define ADCGS_POINTS_MAX (1u << 26) /**< points of a cloud; chosen by hand, not measured */
 
 typedef struct adcgs_points {
     uint32_t n;
@@ -49,6 +49,7 @@ adcgs_status adcgs_npy_parse(adcgs_points *out, const uint8_t *data, size_t byte
 /** Draco in memory, a point cloud or the vertices of a mesh. ADCGS_ERR_UNSUPPORTED without the module. */
 adcgs_status adcgs_draco_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 
+/** Bits of a coordinate in Draco files; chosen by hand, not measured. */
 #define ADCGS_DRACO_BITS 16
 /**
  * Write a Draco point cloud with the points in their order. Positions are rounded to ADCGS_DRACO_BITS bits of the longest edge of

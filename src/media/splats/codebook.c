@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define ITERATIONS 40 /* of Lloyd's algorithm */
+#define ITERATIONS 40 /* of Lloyd's algorithm; chosen by hand, not measured */
 
 static int compare(const void *a, const void *b)
 {

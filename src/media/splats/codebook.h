@@ -5,7 +5,7 @@
 
 #include "base/base.h"
 
-#define ADCGS_CODEBOOK 256
+#define ADCGS_CODEBOOK 256 /**< entries; definition (SOG: an index is a byte) */
 
 /** Compute the codebook of n finite values; sorts them. book is ascending. \return 0 on allocation failure */
 int adcgs_codebook_make(float book[ADCGS_CODEBOOK], float *values, size_t n);

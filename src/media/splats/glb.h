@@ -13,11 +13,12 @@
 
 #include <stdio.h>
 
-#define ADCGS_GLB_HEADER 12        /**< size of the file's header [bytes] */
-#define ADCGS_GLB_CHUNK 8          /**< size of a chunk's header [bytes]: length, type */
-#define ADCGS_GLB_JSON 0x4e4f534au /**< chunk types */
-#define ADCGS_GLB_BINARY 0x004e4942u
-#define ADCGS_GLB_FLOAT 5126 /**< a component type */
+/* Origin: definition (glTF 2.0, "GLB File Format" and accessor.componentType). */
+#define ADCGS_GLB_HEADER 12          /**< size of the file's header [bytes] */
+#define ADCGS_GLB_CHUNK 8            /**< size of a chunk's header [bytes]: length, type */
+#define ADCGS_GLB_JSON 0x4e4f534au   /**< type of a chunk of JSON */
+#define ADCGS_GLB_BINARY 0x004e4942u /**< type of a chunk of numbers */
+#define ADCGS_GLB_FLOAT 5126         /**< componentType of binary32 */
 #define ADCGS_GLB_SPLATS "KHR_gaussian_splatting"
 #define ADCGS_GLB_KERNEL "ellipse"
 #define ADCGS_GLB_COLOURS "srgb_rec709_display"

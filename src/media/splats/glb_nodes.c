@@ -10,8 +10,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define DEPTH_MAX 256 /* maximum number of parents above a node; files of other programs have about ten */
+#define DEPTH_MAX 256 /* maximum number of parents above a node; other files have about ten; chosen by hand, not measured */
 
+/* The unit matrix, row-major 3x4; definition. */
 static const double unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 static adcgs_status bad(const adcgs_glb *g, adcgs_status status, const char *what)

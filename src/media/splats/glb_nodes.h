@@ -5,7 +5,7 @@
 
 #include "media/splats/glb_numbers.h"
 
-#define ADCGS_GLB_PLACES 4096 /**< maximum number of nodes per mesh */
+#define ADCGS_GLB_PLACES 4096 /**< maximum number of nodes per mesh; chosen by hand, not measured */
 
 /** Transforms of the nodes that use a mesh: row-major 3x4 matrices, with the parents' transforms applied. */
 typedef struct adcgs_glb_places {

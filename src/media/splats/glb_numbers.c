@@ -8,9 +8,10 @@
 
 #include <math.h>
 
-#define INT_MAX_IN_JSON ((json_int_t)1 << 53) /* whole numbers up to here are exact in a double */
-#define STRIDE_MAX 252                        /* bytes; glTF's upper bound */
+#define INT_MAX_IN_JSON ((json_int_t)1 << 53) /* whole numbers up to here are exact in a double; arithmetic */
+#define STRIDE_MAX 252                        /* bytes; definition (glTF 2.0, bufferView.byteStride) */
 
+/* Component types; definition (glTF 2.0, accessor.componentType). */
 enum { INT8 = 5120, UINT8, INT16, UINT16 };
 
 /** The attribute that is searched, for messages. */

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Origin: chosen by hand, not measured. */
 #define TEXT_MAX \
     ((size_t)16 << 20)           /* bytes of JSON; splats need a few kilobytes, and jansson takes about 20 times the text in
                                        memory */

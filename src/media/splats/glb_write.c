@@ -15,9 +15,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define ATTRIBUTES 5
-#define FLOATS 14 /* numbers per splat */
-#define DIGITS 9  /* significant decimal digits that preserve each binary32 */
+/* Origin: arithmetic. */
+#define ATTRIBUTES 5 /* entries of attributes[], below */
+#define FLOATS 14    /* numbers per splat: the sum of their components */
+#define DIGITS 9     /* significant decimal digits that preserve each binary32 */
 
 static const struct {
     const char *name, *type;

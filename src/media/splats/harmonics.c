@@ -4,7 +4,7 @@
 
 #include "media/splats/harmonics.h"
 
-/* The square roots of rationals over pi that make each harmonic's square integrate to 1 over the sphere. */
+/* Definition: the square roots of rationals over pi that make each harmonic's square integrate to 1 over the sphere. */
 #define C1 0.4886025119029199  /* sqrt(3 / 4 pi) */
 #define C2A 1.0925484305920792 /* sqrt(15 / 4 pi) */
 #define C2B 0.3153915652525200 /* sqrt(5 / 16 pi) */

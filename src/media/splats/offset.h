@@ -12,7 +12,7 @@
 
 /**
  * Distance of the origin in units of the scene's scale. Beyond it binary32, in steps of 2^-23 of a value, is coarser than 2^-15
- * of the scale.
+ * of the scale: arithmetic. The bound of 2^-15 is chosen by hand, not measured.
  */
 #define ADCGS_OFFSET_FAR 256.0
 

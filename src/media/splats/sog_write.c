@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <webp/encode.h>
 
-#define PLACE_MAX 65535.0
+#define PLACE_MAX 65535.0 /* largest quantised coordinate; definition (SOG: 16 bits) */
 
 typedef struct writer {
     const adcgs_splats *s;

@@ -9,8 +9,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define ARRAYS 14
-#define ALIGN 64
+#define ARRAYS 14 /* of floats per splat; arithmetic, 3 + 3 + 4 + 1 + 3 */
+#define ALIGN 64  /* bytes; definition (splats.h) */
 
 static void place(adcgs_splats *s, float *block, size_t slots)
 {

@@ -12,9 +12,9 @@
 
 #include <adcgs/types.h>
 
-#define ADCGS_SPLATS_DC 0.28209479177387814 /**< the spherical harmonic of degree 0: 1 / (2 sqrt(pi)) */
-#define ADCGS_SPLATS_MAX (1u << 24)
-#define ADCGS_SPLATS_DEGREE_MAX 3
+#define ADCGS_SPLATS_DC 0.28209479177387814 /**< the spherical harmonic of degree 0: 1 / (2 sqrt(pi)); definition */
+#define ADCGS_SPLATS_MAX (1u << 24)         /**< splats of a file; chosen by hand, not measured */
+#define ADCGS_SPLATS_DEGREE_MAX 3           /**< of harmonics; definition (3D Gaussian splatting, KHR_gaussian_splatting) */
 #define ADCGS_SPLATS_NAMES ".ply, .spz, .glb or .sog" /**< extensions of file names, for messages */
 
 /** World axes, right-handed: codes of adcgs_stream. */

@@ -12,6 +12,7 @@
 
 #include <math.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define POLAR_STEPS 60         /* iterations of Newton's method, which converges quadratically */
 #define EVEN 1e-6              /* relative deviation from a uniform scale that still counts as one */
 #define SWEEPS 30              /* of Jacobi's method, at most */
@@ -126,7 +127,7 @@ static void frame_of(const m3 *b, m3 *out, double lengths[3])
 
 /* ---- Harmonics ---- */
 
-#define PER_MAX 7 /* maximum number of coefficients per degree */
+#define PER_MAX 7 /* maximum number of coefficients per degree; arithmetic, 2 * 3 + 1 */
 
 /** Solve A x = b for n columns of b at once, both with n rows; A must be regular. */
 static void solve(int n, double a[PER_MAX][PER_MAX], double b[PER_MAX][PER_MAX])

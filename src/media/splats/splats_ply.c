@@ -13,10 +13,11 @@
 #include <stdlib.h>
 #include <strings.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define LOG_SCALE_MAX 80.0f  /* upper bound of a scale's logarithm */
 #define LOG_SCALE_MIN -80.0f /* the scale of a flat axis, as in GLB */
 
-/* Roles of properties; f_rest_i has the role REST + i. */
+/* Roles of properties; f_rest_i has the role REST + i. Arithmetic: counts of names[], and 3 * 15 of f_rest_*. */
 enum { MEAN, DC = 3, OPACITY = 6, SCALE = 7, ROTATION = 10, REST = 14, REST_MAX = 45 };
 
 static const char *const names[REST] = {"x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
@@ -186,7 +187,7 @@ static adcgs_status check_kind(adcgs_ply *ply)
 
 /* ---- Positions far from the origin ---- */
 
-#define SAMPLES 1024 /* most positions that the median is computed from */
+#define SAMPLES 1024 /* most positions that the median is computed from; chosen by hand, not measured */
 
 /** Positions of some vertices, evenly spread over the file. */
 typedef struct survey {

@@ -8,9 +8,10 @@
 
 #include <math.h>
 
-#define WRITTEN 17 /* floats per splat without f_rest_* */
-#define DC_END 9   /* index of the first of these after f_rest_* */
-#define REST_MAX 45
+/* Origin: definition (properties of 3D Gaussian splatting's PLY files). */
+#define WRITTEN 17  /* floats per splat without f_rest_* */
+#define DC_END 9    /* index of the first of these after f_rest_* */
+#define REST_MAX 45 /* of f_rest_*, 3 channels of degrees 1 to 3 */
 
 /** Number of f_rest_* properties up to a degree. */
 static int rest_count(int degree)

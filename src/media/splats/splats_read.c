@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define FILE_MAX ((uint64_t)8 << 30) /* bytes of a file that is read */
-#define BEGINNING 4                  /* bytes that identify a format */
+#define FILE_MAX ((uint64_t)8 << 30) /* bytes of a file that is read; chosen by hand, not measured */
+#define BEGINNING 4 /* bytes that identify a format; definition (the longest magic number, of PLY, SPZ and GLB) */
 
 int adcgs_splats_is(const char *path)
 {

@@ -14,14 +14,15 @@
 
 #include <stdio.h>
 
-#define ADCGS_SPZ_HEADER 32
+/* Origin: definition (SPZ, whose text is named above). */
+#define ADCGS_SPZ_HEADER 32         /**< bytes of the header of version 4 */
 #define ADCGS_SPZ_ENTRY 16          /**< bytes of a table entry: packed and unpacked size of a stream */
 #define ADCGS_SPZ_ANTIALIASED 1     /**< a flag: trained with antialiasing */
 #define ADCGS_SPZ_COLOUR 0.15       /**< f_dc is (c / 255 - 1/2) / 0.15 */
 #define ADCGS_SPZ_SCALE_MIN (-10.0) /**< scales are e^(s / 16 - 10) */
-#define ADCGS_SPZ_SCALE_STEPS 16.0
-#define ADCGS_SPZ_ROTATION_MAX 511 /**< represents the square root of 1/2, the maximum of the smaller three components */
-#define ADCGS_SPZ_SQRT_HALF 0.70710678118654752
+#define ADCGS_SPZ_SCALE_STEPS 16.0  /**< steps per unit of a scale's logarithm */
+#define ADCGS_SPZ_ROTATION_MAX 511  /**< represents the square root of 1/2, the maximum of the smaller three components */
+#define ADCGS_SPZ_SQRT_HALF 0.70710678118654752 /**< sqrt(1/2) */
 
 /** The columns, in their order in the file. */
 typedef enum adcgs_spz_column {

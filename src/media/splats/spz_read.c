@@ -20,12 +20,13 @@ int adcgs_spz_is(const uint8_t *data, size_t bytes)
 #include <zlib.h>
 #include <zstd.h>
 
+/* Origin, unless a line states one: definition (SPZ, whose text spz.h names). */
 #define OLD_HEADER 16                  /* of versions 2 and 3, packed together with the columns */
-#define GZIP_RATIO 1032                /* upper bound of deflate's compression ratio */
-#define ZSTD_RATIO ((uint64_t)1 << 17) /* above zstd's compression ratio: a block of 128 KiB takes four bytes */
-#define INPUT_PART ((size_t)1 << 30)   /* bytes passed to zlib at once */
-#define FRACTION_MAX 30                /* fractional bits accepted in a header */
-#define HAS_EXTENSIONS 2               /* a flag */
+#define GZIP_RATIO 1032                /* upper bound of deflate's compression ratio; literature (zlib's documentation) */
+#define ZSTD_RATIO ((uint64_t)1 << 17) /* above zstd's ratio: a block of 128 KiB takes four bytes; RFC 8878, arithmetic */
+#define INPUT_PART ((size_t)1 << 30)   /* bytes passed to zlib at once; chosen by hand, not measured */
+#define FRACTION_MAX 30                /* fractional bits accepted in a header; chosen by hand, not measured */
+#define HAS_EXTENSIONS 2               /* flag of a header */
 #define AXES_EXTENSION 0xadbe0003u     /* type of the extension that declares the axes */
 #define AXES_RIGHT_UP_BACK 4u          /* 0 means unspecified, which is treated the same */
 

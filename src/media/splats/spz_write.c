@@ -11,9 +11,9 @@
 #include <zstd.h>
 
 #define COLUMNS ADCGS_SPZ_HARMONICS /* harmonics are not written */
-#define FRACTION_MAX 23             /* fractional bits of a position */
-#define POSITION_MAX 8388607.0      /* 2^23 - 1 */
-#define LEVEL 12                    /* zstd's level; higher ones save less than 1 % of these columns */
+#define FRACTION_MAX 23             /* fractional bits of a position, all but its sign; arithmetic */
+#define POSITION_MAX 8388607.0      /* in units of the last bit: 2^23 - 1; arithmetic */
+#define LEVEL 12                    /* zstd's level; higher ones save less than 1 % of these columns; chosen by hand */
 
 static uint8_t to_byte(double value)
 {

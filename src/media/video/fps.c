@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define WHOLE_WITHIN 1e-6  /* absolute, frames per second */
 #define NTSC_WITHIN 2e-6   /* relative; 29.97 differs from 30000/1001 by half of this */
 #define EQUAL_WITHIN 1e-12 /* relative rounding error of a double that was a ratio */

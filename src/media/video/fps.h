@@ -8,6 +8,7 @@
 
 #include "base/base.h"
 
+/* Origin, frames per second: chosen by hand, not measured. */
 #define ADCGS_FPS_MIN 1e-3 /**< lowest rate that adcgs_fps_parse() accepts */
 #define ADCGS_FPS_MAX 1e4  /**< highest rate that adcgs_fps_parse() accepts */
 

@@ -7,11 +7,12 @@
 #include <math.h>
 #include <stddef.h>
 
+/* Origin, unless a line states one: literature (ITU-R BT.2100 and BT.2408). */
 #define WHITE 203.0f          /* cd/m2 of white paper, BT.2408 */
 #define HLG_SCREEN 1000.0f    /* cd/m2 of the brightest white */
 #define HLG_GAMMA 1.2f        /* system gamma of such a screen */
-#define UNCHANGED 0.7f        /* light up to this share of white is not compressed */
-#define PQ_BRIGHTEST 10000.0f /* cd/m2 */
+#define UNCHANGED 0.7f        /* light up to this share of white is not compressed; chosen by hand, not measured */
+#define PQ_BRIGHTEST 10000.0f /* cd/m2 of the highest signal of PQ */
 
 const char *adcgs_hdr_name(adcgs_hdr kind)
 {

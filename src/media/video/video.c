@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define RATE_MAX 100000.0 /* frames per second */
+#define RATE_MAX 100000.0 /* frames per second; chosen by hand, not measured */
 
 struct adcgs_video {
     const adcgs_ffmpeg *ffmpeg;

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define FRAMES_MAX (1u << 24) /* three days at 60 frames per second */
+#define FRAMES_MAX (1u << 24) /* three days at 60 frames per second; chosen by hand, not measured */
 
 /** True for codecs with exactly one frame per packet. Others have hidden frames, or join several. */
 static int is_frame_each(enum AVCodecID codec)

@@ -9,7 +9,7 @@
 #include <libavutil/pixdesc.h>
 #include <stdlib.h>
 
-/* Rows of floats, in the order of FFmpeg's components: R G B A, or Y Cb Cr A. */
+/* Rows of floats; definition: in the order of FFmpeg's components: R G B A, or Y Cb Cr A. */
 enum { VALUES = 4, ALPHA = 3 };
 
 static float clip(float v)

@@ -17,6 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define AHEAD 8         /* key frames at most this many packets ahead are reached by decoding, not by seeking */
 #define DEFAULT_RATE 25 /* frames per second of a file without a rate */
 

@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define IO_BYTES 65536     /* of the buffer for FFmpeg */
 #define THREADS 4          /* fixed, since the encoders' output depends on it */
 #define KEY_SECONDS 2      /* between key frames, at most KEY_FRAMES_MAX frames */

@@ -8,7 +8,7 @@
 
 #include "media/video/fps.h"
 
-#define ADCGS_Y4M_LINE_MAX 256 /**< bytes of a line, line feed included */
+#define ADCGS_Y4M_LINE_MAX 256 /**< bytes of a line, line feed included; definition (mjpegtools, Y4M_LINE_MAX) */
 
 typedef struct adcgs_y4m_shape {
     int width, height;
