@@ -13,9 +13,10 @@
 #include <stdlib.h>
 #include <strings.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define RANGE_FIRST (UINT64_C(64) << 10) /* bytes of a first range */
 #define RANGE_MAX (UINT64_C(1) << 20)    /* bytes of the longest range */
-#define BYTES_MAX (UINT64_C(1) << 36)    /* of a stream of the highest level */
+#define BYTES_MAX (UINT64_C(1) << 36)    /* of a stream of the highest level; definition (the specification) */
 
 /** A cached range. */
 typedef struct window {

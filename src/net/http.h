@@ -56,7 +56,7 @@ int64_t adcgs_http_read_at(void *user, uint64_t offset, void *buffer, size_t byt
 /** If one of these functions failed: status becomes that failure's, and *error its message instead of the reader's. */
 adcgs_status adcgs_http_explain(const adcgs_http *http, adcgs_status status, adcgs_error *error);
 
-/** Maximum number of bytes that adcgs_http_load() loads. */
+/** Maximum number of bytes that adcgs_http_load() loads; chosen by hand, not measured. */
 #define ADCGS_HTTP_LOAD_MAX (UINT64_C(1) << 30)
 /** The number of useful bytes, from the first on, of a file that begins with these bytes. */
 typedef uint64_t (*adcgs_http_useful_fn)(const uint8_t *data, size_t bytes);

@@ -11,7 +11,7 @@
 
 #include "base/base.h"
 
-#define ADCGS_RANKS_HOST 64 /**< bytes of a host's name, its terminating zero included */
+#define ADCGS_RANKS_HOST 64 /**< bytes of a host's name, its terminating zero included; chosen by hand, not measured */
 
 struct adcgs_mpi;
 

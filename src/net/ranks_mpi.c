@@ -12,8 +12,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { TAG_MESSAGE = 1, TAG_PART = 2 };
-#define PIECE ((size_t)1 << 30) /* bytes per piece of a part: MPI counts in int */
+/* Origin: chosen by hand, not measured. */
+enum { TAG_MESSAGE = 1, TAG_PART = 2 }; /* tags of MPI */
+#define PIECE ((size_t)1 << 30)         /* bytes per piece of a part: MPI counts in int */
 
 /* Threads take turns, since MPI is only asked for MPI_THREAD_SERIALIZED. */
 static pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
