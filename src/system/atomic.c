@@ -15,10 +15,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#define NAME_TRIES 1000 /* attempts to find an unused temporary name */
-#define NAME_USUAL 255  /* maximum length of a name [bytes] if the file system does not report it; Linux's value */
-#define LINKS_MAX 40    /* maximum number of links in a chain; Linux's limit */
-#define MODE_BITS 0777
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define NAME_TRIES 1000     /* attempts to find an unused temporary name */
+#define NAME_USUAL 255      /* bytes of a name, at most, if the file system does not report it; definition (NAME_MAX of Linux) */
+#define LINKS_MAX 40        /* maximum number of links in a chain; definition (MAXSYMLINKS of Linux) */
+#define MODE_BITS 0777      /* permissions among the bits of a mode; definition (POSIX, sys/stat.h) */
 #define READER_NAP 50000000 /* nanoseconds between two checks for a reader of a pipe */
 
 /** Length of the folder part of a path, with its slash. */

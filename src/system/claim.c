@@ -15,6 +15,7 @@
 #include <time.h>
 #include <unistd.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #ifndef BEAT    /* a test sets a shorter one */
 #define BEAT 10 /* seconds between two touches */
 #endif

@@ -19,7 +19,7 @@
 
 #include "base/base.h"
 
-#define ADCGS_CLAIM_SECONDS 60 /**< seconds without a touch after which a claim is suspect */
+#define ADCGS_CLAIM_SECONDS 60 /**< seconds without a touch after which a claim is suspect; chosen by hand, not measured */
 
 typedef struct adcgs_claim adcgs_claim;
 

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define WHOLE_MAX 9007199254740992.0 /* 2^53: whole numbers below it are exact */
+#define WHOLE_MAX 9007199254740992.0 /* 2^53: whole numbers below it are exact; arithmetic */
 
 void adcgs_json_init(adcgs_json *json)
 {

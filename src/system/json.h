@@ -11,6 +11,7 @@
 
 #include <stdio.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define ADCGS_JSON_DEPTH 8   /**< nested objects and arrays */
 #define ADCGS_JSON_DIGITS 10 /**< significant digits in reports; 17 preserve each double */
 

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define WAIT_MILLISECONDS 100 /* longest wait of a read */
+#define WAIT_MILLISECONDS 100 /* longest wait of a read; chosen by hand, not measured */
 
 int adcgs_pipe_is(const char *path)
 {

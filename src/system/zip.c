@@ -11,11 +11,12 @@
 
 #include <zlib.h>
 
+/* Origin: definition (ZIP, APPNOTE.TXT 4.3.7, 4.3.12, 4.3.16, 4.4.3, 4.4.6). */
 #define LOCAL 30       /* bytes of a file's header */
 #define CENTRAL 46     /* bytes of its entry in the directory */
 #define END 22         /* bytes of the record after the directory */
-#define NEEDED 20      /* version that a reader must support */
-#define FIRST_DAY 0x21 /* 1 January 1980 */
+#define NEEDED 20      /* tenths of the version that a reader must support */
+#define FIRST_DAY 0x21 /* 1 January 1980 in the form of MS-DOS */
 
 static void put(adcgs_zip *zip, const void *data, size_t bytes)
 {

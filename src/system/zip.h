@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-#define ADCGS_ZIP_FILES 8
+#define ADCGS_ZIP_FILES 8 /**< files of an archive, at most; chosen by hand, not measured */
 
 typedef struct adcgs_zip {
     FILE *file; /**< the caller checks it for errors; members below are initially zero */
