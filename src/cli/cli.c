@@ -22,6 +22,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define HELP_COLUMN 28   /* column of the options' descriptions */
 #define MESSAGE_MAX 8192 /* bytes of a message */
 

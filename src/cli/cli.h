@@ -37,7 +37,7 @@ typedef struct adcgs_option {
     int *given;                 /**< set to 1 when the option is given; may be NULL */
 } adcgs_option;
 
-#define ADCGS_OPTIONS_MAX 64 /**< options of a program */
+#define ADCGS_OPTIONS_MAX 64 /**< options of a program, at most; chosen by hand, not measured */
 
 /** A table of options that consists of groups. Zero-initialise before the first group. */
 typedef struct adcgs_option_table {

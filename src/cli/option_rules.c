@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LIST_MAX 400 /* bytes of a list of options in a message */
+#define LIST_MAX 400 /* bytes of a list of options in a message; chosen by hand, not measured */
 
 /** Returns the next name of a list and its length, and moves *list behind it; NULL at the end. */
 static const char *next_name(const char **list, size_t *length)

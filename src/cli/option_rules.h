@@ -5,6 +5,7 @@
 
 #include "cli/cli.h"
 
+/* Bytes of a broken rule in words: two lists of 400 (LIST_MAX in option_rules.c) and a few words between; arithmetic. */
 enum { ADCGS_RULE_TEXT = 900 };
 
 /** Returns 1 and a message if a rule is broken, the first one. given: 1 for each option that the command line has. */

@@ -18,6 +18,7 @@
 #include <time.h>
 #include <unistd.h>
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define TERMINAL_EVERY 0.1 /* seconds between two updates on a terminal */
 #define LINES_FIRST 5.0    /* seconds to the first line without a terminal; each further interval is doubled */
 #define LINES_MOST 25.0    /* upper bound of the seconds between two lines */
