@@ -13,12 +13,13 @@
 
 #include <stdio.h>
 
-#define ADCGS_VECTOR_MODELS 32
-#define ADCGS_VECTOR_CAMERAS 8
-#define ADCGS_VECTOR_TIMES 8
-#define ADCGS_VECTOR_FRAMES 64
-#define ADCGS_VECTOR_LAYERS 4
-#define ADCGS_HEX 33
+/* Origin, unless a line states one: chosen by hand, not measured. Counts are the most that a vector of the manifest may have. */
+#define ADCGS_VECTOR_MODELS 32  /**< models */
+#define ADCGS_VECTOR_CAMERAS 8  /**< cameras */
+#define ADCGS_VECTOR_TIMES 8    /**< times of digests of splats */
+#define ADCGS_VECTOR_FRAMES 64  /**< rendered frames */
+#define ADCGS_VECTOR_LAYERS 4   /**< decodings without layers */
+#define ADCGS_HEX 33            /**< bytes of an MD5 in hexadecimal, with its zero; arithmetic */
 #define ADCGS_REFUSED "refused" /**< replaces a frame's digest if its camera is refused */
 #define ADCGS_WHAT 400          /**< bytes of an explanation */
 

@@ -13,7 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#define ANSWERS_MAX (1 << 20)
+#define ANSWERS_MAX (1 << 20) /* bytes of a program's answers; chosen by hand, not measured */
 
 /** One run of the program. */
 typedef struct run {

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 
 /* Memory bound of a decoder: MEMORY_FACTOR models of the level and MEMORY_CONSTANT bytes. A decoder holds the models and,
-   while reading, a chunk and the values decoded from it; more memory is a defect. */
+   while reading, a chunk and the values decoded from it; more memory is a defect. Chosen by hand, not measured. */
 #define MEMORY_FACTOR 2
 #define MEMORY_CONSTANT (UINT64_C(1) << 20)
 
