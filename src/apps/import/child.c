@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define WAIT_MS 100
+#define WAIT_MS 100 /* milliseconds between two checks of the child; chosen by hand, not measured */
 
 extern char **environ;
 

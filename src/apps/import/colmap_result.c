@@ -11,8 +11,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define POSED_LEAST 3 /* least number of views to train on; for fixed cameras two suffice */
-#define STANDING_LEAST 2
+/* Origin: chosen by hand, not measured. */
+#define POSED_LEAST 3    /* least number of views to train on */
+#define STANDING_LEAST 2 /* least number of fixed cameras */
 
 void adcgs_poses_clear(adcgs_poses *poses)
 {

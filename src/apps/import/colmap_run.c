@@ -12,10 +12,11 @@
 #include <errno.h>
 #include <stdlib.h>
 
-#define WORDS_MAX 32
+/* Origin: chosen by hand, not measured. */
+#define WORDS_MAX 32      /* words of a command */
 #define SEQUENCE_LEAST 30 /* images of a film from which on only neighbours in time are matched */
 #define OVERLAP "10"      /* images after each; and those 1, 2, 4, 8, ... 512 images later (quadratic overlap) */
-#define MAPPER_GROWTH 1.5 /* with each image the adjustment of all takes longer */
+#define MAPPER_GROWTH 1.5 /* exponent of the number of images in the mapper's time: each adjustment of all takes longer */
 #define SMALLEST_MODEL "3"
 #define GLOMAP "glomap"
 #define FISHEYE_FOCAL \

@@ -20,8 +20,8 @@
 #include <unistd.h>
 
 #define UNFINISHED ".importing"
-#define STAMP "footage.txt" /* fingerprint of the inputs of an unfinished folder */
-#define STAMP_MAX ((uint64_t)1 << 28)
+#define STAMP "footage.txt"           /* fingerprint of the inputs of an unfinished folder */
+#define STAMP_MAX ((uint64_t)1 << 28) /* bytes of the fingerprint; chosen by hand, not measured */
 
 static const char *const kinds[] = {"pictures", "film", "rig"};
 

@@ -65,10 +65,10 @@ typedef struct adcgs_import_report {
 
 /**
  * Median triangulation angle, in degrees, below which the depth of points is mostly noise. A step of half a
- * metre to the side at a distance of 20 metres gives 1.4.
+ * metre to the side at a distance of 20 metres gives 1.4. Chosen by hand, not measured.
  */
 #define ADCGS_IMPORT_ANGLE_LEAST 1.5
-/** Least share of the images, or fixed cameras, with a pose. */
+/** Least share of the images, or fixed cameras, with a pose; chosen by hand, not measured. */
 #define ADCGS_IMPORT_POSED_LEAST 0.5
 
 /**

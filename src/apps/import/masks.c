@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SHAPE_TOLERANCE 0.01
+#define SHAPE_TOLERANCE 0.01 /* relative difference of aspect ratios; chosen by hand, not measured */
 
 /** Finds a mask by its name without or with the extension of an image; *out is NULL if there is none. */
 static adcgs_status find(const adcgs_import_job *job, const char *name, int length, char **out)

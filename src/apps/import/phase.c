@@ -6,8 +6,9 @@
 
 #include <math.h>
 
-#define LEAST_DONE 3 /* parts, and seconds, from which a rate is known */
-#define LEAST_SECONDS 2.0
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define LEAST_DONE 3      /* parts from which a rate is known */
+#define LEAST_SECONDS 2.0 /* seconds from which it is known */
 
 double adcgs_import_time_left(double spent, uint32_t done, uint32_t all, double growth)
 {

@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-#define PICTURE_BYTES_MAX ((uint64_t)1 << 30)
+#define PICTURE_BYTES_MAX ((uint64_t)1 << 30) /* bytes of an image file; chosen by hand, not measured */
 
 adcgs_status adcgs_import_path(char **out, const adcgs_import_job *job, const char *name)
 {

@@ -10,7 +10,7 @@
 #include <ctype.h>
 #include <stdlib.h>
 
-#define SHOTS_MAX 10000 /* limit of cameras in a scene file */
+#define SHOTS_MAX 10000 /* images: limit of cameras in a scene file; chosen by hand, not measured */
 
 void adcgs_source_images_clear(adcgs_source_images *sources)
 {

@@ -5,7 +5,7 @@
 
 #include "apps/import/import.h"
 
-#define ADCGS_SOURCE_IMAGE_NAME 64
+#define ADCGS_SOURCE_IMAGE_NAME 64 /**< bytes of a name, with its zero; chosen by hand, not measured */
 
 typedef enum adcgs_footage_kind { ADCGS_FOOTAGE_PICTURES, ADCGS_FOOTAGE_FILM, ADCGS_FOOTAGE_RIG } adcgs_footage_kind;
 

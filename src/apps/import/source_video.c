@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Chosen by hand, not measured. */
 #define MOMENTS 3 /* frame times of fixed cameras: one time may have too few features to find the poses */
 
 /** Adds a camera for an open video. */
