@@ -15,6 +15,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Bytes of a line; columns of a table. Chosen by hand, not measured. */
 enum { LINE = 1024, COLUMNS = 32 };
 
 typedef enum column { BYTES, PSNR, SSIM, MOVING, SECONDS, SPEED, SOURCE, OTHER } column;

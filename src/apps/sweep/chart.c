@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-/** Ratio of the largest to the smallest value from which an axis is logarithmic. */
+/** Ratio of the largest to the smallest value from which an axis is logarithmic; chosen by hand, not measured. */
 #define DECADE 10.0
 
 /** A quantity of points, in the unit of an axis. */

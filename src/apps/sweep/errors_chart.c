@@ -9,9 +9,10 @@
 
 #include <math.h>
 
-#define LABELS_X 26 /* labels that fit below a panel, and next to it */
-#define LABELS_Y 16
-#define LABEL 20 /* characters of a label */
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define LABELS_X 26 /* labels that fit below a panel */
+#define LABELS_Y 16 /* labels that fit next to it */
+#define LABEL 20    /* characters of a label */
 
 static double quality_of(const adcgs_sweep_view *view, int moving)
 {

@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-#define MISSING 127 /* exit code without gnuplot */
+#define MISSING 127 /* exit code without gnuplot; definition (the command below; POSIX shells likewise) */
 
 adcgs_status adcgs_chart_open(adcgs_atomic *file, const adcgs_sweep *sweep, const char *name, adcgs_error *error)
 {

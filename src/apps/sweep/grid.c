@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define BLANKS " ;"
-#define SECONDS_MAX 1e6
+#define SECONDS_MAX 1e6 /* seconds of an option, at most; chosen by hand, not measured */
 
 /* ---- Options of the encoder ---- */
 

@@ -8,10 +8,11 @@
 
 #include "base/base.h"
 
+/* Origin, unless a line states one: chosen by hand, not measured. */
 #define ADCGS_SWEEP_LIST 16 /**< values of an axis, of lambda and of seeds; choices of a grid */
-#define ADCGS_SWEEP_AXES 4
+#define ADCGS_SWEEP_AXES 4  /**< axes of a grid */
 #define ADCGS_SWEEP_NAME 24 /**< bytes of an axis or value name, with its zero */
-#define ADCGS_SWEEP_CHOICE (ADCGS_SWEEP_AXES * 2 * ADCGS_SWEEP_NAME)
+#define ADCGS_SWEEP_CHOICE (ADCGS_SWEEP_AXES * 2 * ADCGS_SWEEP_NAME) /**< bytes of names and values of all axes; arithmetic */
 
 typedef struct adcgs_sweep_axis {
     char name[ADCGS_SWEEP_NAME];

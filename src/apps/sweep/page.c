@@ -16,7 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#define PICTURE_BYTES_MAX ((uint64_t)1 << 30) /* bytes of an image for the page */
+#define PICTURE_BYTES_MAX ((uint64_t)1 << 30) /* bytes of an image for the page; chosen by hand, not measured */
 
 /** Output of a report: plain text, or HTML if html is set. */
 typedef struct sheet {
@@ -25,6 +25,7 @@ typedef struct sheet {
     int first; /* width of the first column in text */
 } sheet;
 
+/* Columns of a table: arithmetic, the widths in put_row(). Bytes of a cell: a choice and 16, chosen by hand, not measured. */
 enum { COLUMNS = 10, CELL = ADCGS_SWEEP_CHOICE + 16 };
 
 typedef char table_row[COLUMNS][CELL];

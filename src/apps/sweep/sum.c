@@ -8,9 +8,9 @@
 
 #include <math.h>
 
-/** A point at most this much below another counts as equal, dB. */
+/** A point at most this much below another counts as equal, dB; chosen by hand, not measured. */
 #define EQUAL_DB 0.1
-/** Minimum relative difference of sizes that counts as fewer bytes. */
+/** Minimum relative difference of sizes that counts as fewer bytes; chosen by hand, not measured. */
 #define FEWER 1e-6
 
 adcgs_spread adcgs_sweep_spread(const adcgs_sweep_plan *plan, int cell, adcgs_figure figure)

@@ -16,15 +16,16 @@
 #include <stdio.h>
 #include <sys/types.h>
 
-#define ADCGS_SWEEP_CELLS 320 /**< 16 x 16 of the grid, yardsticks, ablation */
-#define ADCGS_SWEEP_CURVES 40 /**< 16 of the grid, 7 yardsticks, earlier sweeps, other methods */
-#define ADCGS_SWEEP_STAGES 12
-#define ADCGS_SWEEP_AGAINST 8   /**< earlier sweeps to compare with, and other methods */
-#define ADCGS_SWEEP_PORTIONS 24 /**< 5 layers, 8 tiers, ten tenths of the bytes */
-#define ADCGS_SWEEP_PATH 4096
-#define ADCGS_SWEEP_TAG (ADCGS_SWEEP_CHOICE + 96)
+/* Origin, unless a line states one: chosen by hand, not measured. */
+#define ADCGS_SWEEP_CELLS 320                     /**< 16 x 16 of the grid, yardsticks, ablation */
+#define ADCGS_SWEEP_CURVES 40                     /**< 16 of the grid, 7 yardsticks, earlier sweeps, other methods */
+#define ADCGS_SWEEP_STAGES 12                     /**< stages of the ablation */
+#define ADCGS_SWEEP_AGAINST 8                     /**< earlier sweeps to compare with, and other methods */
+#define ADCGS_SWEEP_PORTIONS 24                   /**< 5 layers, 8 tiers, ten tenths of the bytes */
+#define ADCGS_SWEEP_PATH 4096                     /**< bytes of a path */
+#define ADCGS_SWEEP_TAG (ADCGS_SWEEP_CHOICE + 96) /**< bytes of a run's tag */
 
-/** Yardsticks to measure against. */
+/** Yardsticks to measure against, as bits; definition. */
 enum { ADCGS_YARD_NETWORKS = 1, ADCGS_YARD_UNCOMPRESSED = 2, ADCGS_YARD_GAUSSIANS = 4, ADCGS_YARD_ALL = 7 };
 
 /** The request. */
@@ -240,7 +241,7 @@ adcgs_comparison adcgs_sweep_compare(const adcgs_sweep_plan *plan, const adcgs_s
 
 /** Writes sweep.csv, ablation.csv, portions.csv, views.csv and sweep.json to the folder (sweep_write.c). */
 adcgs_status adcgs_sweep_write_tables(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error);
-/** A test view on the page: ground truth, decoded, and their difference. */
+/** A test view on the page: ground truth, decoded, and their difference. Definition: the worst and the middle view. */
 enum { ADCGS_SWEEP_PICTURES = 2 };
 typedef struct adcgs_sweep_picture {
     const char *name, *run; /**< "worst"; the run's tag */
