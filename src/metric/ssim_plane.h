@@ -8,7 +8,7 @@
 
 #include "base/base.h"
 
-/* Literature: the window of 11x11 pixels of Wang, Bovik, Sheikh and Simoncelli, 2004; moments by definition. */
+/* Literature: the window of 11x11 pixels of Wang, Bovik, Sheikh and Simoncelli, 2004; its sums by definition. */
 enum {
     ADCGS_SSIM_RADIUS = 5,                       /**< pixels */
     ADCGS_SSIM_TAPS = 2 * ADCGS_SSIM_RADIUS + 1, /**< width of the window */

@@ -169,9 +169,9 @@ typedef struct adcgs_camera {
 } adcgs_camera;
 
 /**
- * A camera as the renderer uses it: scene units, binary32 (clause "View"). For programs that draw the splats of
- * adcgs_get_primitives() themselves. The floats lie in a row without padding. A point p of the scene has the camera coordinates
- * rotation p + translation.
+ * A camera as the renderer uses it: scene units, binary32 (clause "View"). For programs that render the splats of
+ * adcgs_get_primitives() themselves. The floats lie in a row without padding. A point p of the scene has the camera
+ * coordinates rotation p + translation.
  */
 typedef struct adcgs_view {
     int32_t width;        /**< pixels, of the camera */

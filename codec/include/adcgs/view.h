@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Cameras for programs that draw splats themselves, for example with a GPU.
+ * Cameras for programs that render splats themselves, for example on a GPU.
  */
 #ifndef ADCGS_VIEW_H
 #define ADCGS_VIEW_H
@@ -19,8 +19,8 @@ extern "C" {
  * \param origin adcgs_info.scene_origin: x, y, z in world units
  * \param scale adcgs_info.scene_scale: world units in a scene unit, 2^-60..2^60
  * \param error says why it failed; may be NULL
- * \return ADCGS_OK; ADCGS_ERR_USAGE if another pointer is NULL, the camera or the scale is not as described, the near plane is
- *         outside of 2^-30..2^30 scene units, or the camera is farther than 2^30 scene units from the scene
+ * \return ADCGS_OK, or ADCGS_ERR_USAGE in these cases: another pointer is NULL; the camera or the scale is not as described; the
+ *         near plane is outside of 2^-30..2^30 scene units; the camera is farther than 2^30 scene units from the scene
  */
 ADCGS_API adcgs_status adcgs_view_init(adcgs_view *view, const adcgs_camera *camera, const double origin[3], double scale,
                                        adcgs_error *error);

@@ -103,8 +103,8 @@ static void test_info_sizes(void **state)
     adcgs_close(&d);
 }
 
-/** With the summary alone, a program draws splats as the decoder does, and knows when a stream is too long. REQ-REND-001 */
-static void test_facts_for_drawing(void **state)
+/** With the summary alone, a program renders splats as the decoder does, and knows when a stream is too long. REQ-REND-001 */
+static void test_facts_for_rendering(void **state)
 {
     const fixture *f = *state;
     const uint64_t bytes_max[] = {UINT64_C(4) << 20, UINT64_C(256) << 20, UINT64_C(64) << 30};
@@ -347,7 +347,7 @@ int main(void)
         cmocka_unit_test(test_info_sizes),    cmocka_unit_test(test_metadata),
         cmocka_unit_test(test_version),       cmocka_unit_test(test_errors),
         cmocka_unit_test(test_memory_limits), cmocka_unit_test(test_log),
-        cmocka_unit_test(test_writer_limits), cmocka_unit_test(test_facts_for_drawing),
+        cmocka_unit_test(test_writer_limits), cmocka_unit_test(test_facts_for_rendering),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
