@@ -138,7 +138,7 @@ static adcgs_status set_steps(adcgs_plan *plan, const adcgs_command *c, void *us
     return ADCGS_OK;
 }
 
-/* shapes G0 .. G7, eta_mu M.., eta_si S..: the last number holds for the rest. */
+/* eta_mu M.., eta_si S..: the last number holds for the rest. */
 static adcgs_status set_table(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     adcgs_model *const m = user;
@@ -148,9 +148,7 @@ static adcgs_status set_table(adcgs_plan *plan, const adcgs_command *c, void *us
     for (int i = 0; i < ADCGS_GROUPS; i++) {
         if (i + 1 < c->n)
             ADCGS_TRY(adcgs_word_int(c->word[1 + i], -32767, 32767, &value, error));
-        if (adcgs_command_is(c, "shapes"))
-            m->shape[i] = (uint8_t)(value & 3);
-        else if (adcgs_command_is(c, "eta_mu"))
+        if (adcgs_command_is(c, "eta_mu"))
             m->eta_mu[i] = (int16_t)value;
         else
             m->eta_si[i] = (uint8_t)(value & 63);
@@ -164,14 +162,11 @@ static adcgs_status fill_tables(adcgs_plan *plan, adcgs_model *m, adcgs_error *e
     fill_steps(m->d_sigma, adcgs_sigma_rows(&m->params), 0, 0x1p-10);
     fill_steps(m->d_colour, ADCGS_COLOUR_N, 0, 0x1p-11);
     fill_steps(m->d_fg, m->params.n_fg, 0, 0x1p-10);
-    for (int i = 0; i < ADCGS_GROUPS; i++)
-        m->shape[i] = (uint8_t)adcgs_draw_int(&plan->state, 0, ADCGS_SHAPES - 1);
     for (int i = 0; i < ADCGS_ETA_MAX; i++) {
         m->eta_mu[i] = (int16_t)adcgs_draw_int(&plan->state, -400, 400);
         m->eta_si[i] = (uint8_t)adcgs_draw_int(&plan->state, 0, ADCGS_SIGMA_LEVELS - 1);
     }
     ADCGS_TRY(adcgs_plan_each(plan, "steps", set_steps, m, error));
-    ADCGS_TRY(adcgs_plan_each(plan, "shapes", set_table, m, error));
     ADCGS_TRY(adcgs_plan_each(plan, "eta_mu", set_table, m, error));
     ADCGS_TRY(adcgs_plan_each(plan, "eta_si", set_table, m, error));
     m->voxel = plan->voxel > 0 ? (float)plan->voxel : 2.0f / (float)(1U << m->depth);

@@ -36,9 +36,9 @@ static int32_t paint(drawing *w, const adcgs_latent_site *site, int c)
 }
 
 /* The index n of a value; the caller limits it to the values that can be coded. */
-static int32_t choose(drawing *w, const adcgs_latent_site *site, int c, int shape, int si)
+static int32_t choose(drawing *w, const adcgs_latent_site *site, int c, int si)
 {
-    const int32_t support = adcgs_table_support(shape, si), turn = w->turn++, sign = turn & 1 ? -1 : 1;
+    const int32_t support = adcgs_table_support(si), turn = w->turn++, sign = turn & 1 ? -1 : 1;
     const int prefix = turn / 2 % 16;
     switch (w->plan->values) {
     case ADCGS_FILL_RANDOM:
@@ -60,7 +60,7 @@ static int32_t choose(drawing *w, const adcgs_latent_site *site, int c, int shap
 /** For commands "force": the place of a value, and the value after these commands. */
 typedef struct forced {
     const adcgs_latent_site *site;
-    int c, shape, si;
+    int c, si;
     int32_t n;
 } forced;
 
@@ -84,9 +84,9 @@ static adcgs_status force(adcgs_plan *plan, const adcgs_command *c, void *user, 
         (f->site->k >= 0 && !word_is_index(c->word[3], f->site->k)) || !word_is_index(c->word[4], f->site->first + f->c))
         return ADCGS_OK;
     const int negative = c->word[5][0] == '-';
-    const int32_t support = adcgs_table_support(f->shape, f->si);
+    const int32_t support = adcgs_table_support(f->si);
     if (adcgs_word_choice(c->word[5] + negative, names, &name, NULL) == ADCGS_OK) {
-        f->n = name == 0 ? adcgs_value_max(f->shape, f->si) : support + (name == 2);
+        f->n = name == 0 ? adcgs_value_max(f->si) : support + (name == 2);
         f->n = negative ? -f->n : f->n;
         return ADCGS_OK;
     }
@@ -99,14 +99,14 @@ static void draw_site(void *user, const adcgs_latent_site *site)
 {
     drawing *const w = user;
     for (int c = 0; c < site->count; c++) {
-        const int shape = w->model->shape[site->group], si = site->si[c];
-        forced f = {site, c, shape, si, 0};
+        const int si = site->si[c];
+        forced f = {site, c, si, 0};
         if (si > 0) {
-            const int32_t most = adcgs_value_max(shape, si);
-            f.n = choose(w, site, c, shape, si);
+            const int32_t most = adcgs_value_max(si);
+            f.n = choose(w, site, c, si);
             adcgs_plan_each(w->plan, "force", force, &f, NULL); /* adcgs_draw_check() has checked the commands */
             f.n = adcgs_clip(f.n, most);
-            adcgs_value_enc(&w->range, shape, si, f.n);
+            adcgs_value_enc(&w->range, si, f.n);
         }
         site->yq[c] = (int16_t)adcgs_clip(64 * f.n + site->mu[c], 32767);
     }

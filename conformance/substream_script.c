@@ -82,12 +82,12 @@ static void code_bits(adcgs_script *s, int64_t value, int64_t n)
  * tree NAME N VALUE    N adaptive decisions
  * unary NAME N MAX     N times 1, then 0 unless N is MAX
  * tail NAME N VALUE    N bits, the first two adaptive
- * value SHAPE SI N     a quantised value
+ * value SI N           a quantised value
  */
 int adcgs_script_step(adcgs_script *s, const adcgs_command *c, adcgs_status *status, adcgs_error *error)
 {
     static const char *const verbs[] = {"bits", "flag", "tree", "unary", "tail", "value", NULL};
-    static const int words[] = {2, 2, 3, 3, 3, 3};
+    static const int words[] = {2, 2, 3, 3, 3, 2};
     static const int named[] = {0, 1, 1, 1, 1, 0};
     int64_t v[3] = {0, 0, 0};
     int verb;
@@ -112,7 +112,7 @@ int adcgs_script_step(adcgs_script *s, const adcgs_command *c, adcgs_status *sta
         code_tree(s, c->word[1], v[2] >> (v[1] - adaptive), adaptive);
         code_bits(s, v[2] & ((INT64_C(1) << (v[1] - adaptive)) - 1), v[1] - adaptive);
     } else {
-        adcgs_value_enc(&s->range, (int)v[0] & 3, (int)v[1] & 63, (int32_t)v[2]);
+        adcgs_value_enc(&s->range, (int)v[0] & 63, (int32_t)v[1]);
     }
     return 1;
 }

@@ -144,7 +144,6 @@ static void visit_model(visitor *v, const adcgs_model *a, const adcgs_model *b)
     LIST("d_sigma", d_sigma, (size_t)adcgs_sigma_rows(&a->params));
     LIST("d_colour", d_colour, ADCGS_COLOUR_N);
     LIST("d_fg", d_fg, a->params.n_fg);
-    LIST("shape", shape, ADCGS_GROUPS);
     LIST("eta_mu", eta_mu, a->params.n_eta);
     LIST("eta_si", eta_si, a->params.n_eta);
     ITEM("finest", finest);

@@ -33,7 +33,7 @@ adcgs_status adcgs_inter_decode(adcgs_inter *kept, const adcgs_model *before, ad
 adcgs_status adcgs_inter_encode(const adcgs_inter *kept, const adcgs_model *before, adcgs_buffer *out, adcgs_error *error);
 
 /**
- * Whether a model can follow another as a predicted segment. It must share parameters, grid, shapes, steps and the prior of eta,
+ * Whether a model can follow another as a predicted segment. It must share parameters, grid, steps and the prior of eta,
  * and must have every network that the other has. If not, why names the part that differs.
  */
 int adcgs_inter_possible(const adcgs_model *before, const adcgs_model *now, adcgs_error *why);

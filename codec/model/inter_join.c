@@ -26,9 +26,8 @@ int adcgs_inter_possible(const adcgs_model *a, const adcgs_model *b, adcgs_error
     else if (a->depth != b->depth || !same_bytes(a->origin, b->origin, sizeof a->origin) ||
              !same_bytes(&a->voxel, &b->voxel, sizeof a->voxel))
         what = "grid";
-    else if (!same_bytes(a->shape, b->shape, sizeof a->shape) || !same_bytes(a->eta_mu, b->eta_mu, sizeof a->eta_mu) ||
-             !same_bytes(a->eta_si, b->eta_si, sizeof a->eta_si))
-        what = "shapes";
+    else if (!same_bytes(a->eta_mu, b->eta_mu, sizeof a->eta_mu) || !same_bytes(a->eta_si, b->eta_si, sizeof a->eta_si))
+        what = "priors";
     else if (a->finest != b->finest || !same_bytes(a->growth, b->growth, a->finest * sizeof *a->growth))
         what = "tiers";
     else if (!same_bytes(a->d_fv, b->d_fv, a->params.n_fv * sizeof *a->d_fv) ||

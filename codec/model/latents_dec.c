@@ -5,7 +5,6 @@
 
 typedef struct decoder {
     adcgs_range_dec *range;
-    const uint8_t *shape; /**< by group */
 } decoder;
 
 static int decode_flag(void *user, adcgs_adaptive *context, int bit)
@@ -18,9 +17,8 @@ static int decode_flag(void *user, adcgs_adaptive *context, int bit)
 static void decode_site(void *user, const adcgs_latent_site *site)
 {
     decoder *d = user;
-    const int shape = d->shape[site->group];
     for (int c = 0; c < site->count; c++) {
-        const int32_t n = site->si[c] > 0 ? adcgs_value_dec(d->range, shape, site->si[c]) : 0;
+        const int32_t n = site->si[c] > 0 ? adcgs_value_dec(d->range, site->si[c]) : 0;
         site->yq[c] = (int16_t)adcgs_clip(64 * n + site->mu[c], 32767);
     }
 }
@@ -28,14 +26,14 @@ static void decode_site(void *user, const adcgs_latent_site *site)
 adcgs_status adcgs_latents_decode_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_range_dec *range,
                                         adcgs_error *error)
 {
-    decoder d = {range, model->shape};
+    decoder d = {range};
     return adcgs_latents_flags(model, begin, end, decode_flag, &d, error);
 }
 
 adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                   adcgs_range_dec *range, void *room, adcgs_error *error)
 {
-    decoder d = {range, model->shape};
+    decoder d = {range};
     if (layer == 0)
         ADCGS_TRY(adcgs_latents_decode_flags(model, begin, end, range, error));
     adcgs_latents_walk_in(latents, model, layer, begin, end, decode_site, &d, room);

@@ -5,7 +5,6 @@
 
 typedef struct encoder {
     adcgs_range_enc range;
-    const uint8_t *shape; /**< by group */
     adcgs_status status;
     adcgs_error *error;
 } encoder;
@@ -31,23 +30,22 @@ static int32_t level_of(int32_t yq, int32_t mu)
 static void encode_site(void *user, const adcgs_latent_site *site)
 {
     encoder *e = user;
-    const int shape = e->shape[site->group];
     for (int c = 0; c < site->count && e->status == ADCGS_OK; c++) {
-        const int32_t yq = site->yq[c], n = level_of(yq, site->mu[c]), limit = adcgs_value_max(shape, site->si[c]);
+        const int32_t yq = site->yq[c], n = level_of(yq, site->mu[c]), limit = adcgs_value_max(site->si[c]);
         if (adcgs_clip(64 * n + site->mu[c], 32767) != yq || n < -limit || n > limit || (site->si[c] == 0 && n != 0))
             e->status = adcgs_fail(e->error, ADCGS_ERR_USAGE,
                                    "latents: anchor %u, primitive %d, group %d, channel %d holds %d, which mean %d and level %u "
                                    "cannot give",
                                    site->anchor, site->k, site->group, site->first + c, yq, site->mu[c], site->si[c]);
         else if (site->si[c] > 0)
-            adcgs_value_enc(&e->range, shape, site->si[c], n);
+            adcgs_value_enc(&e->range, site->si[c], n);
     }
 }
 
 adcgs_status adcgs_latents_encode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                   adcgs_buffer *out, adcgs_error *error)
 {
-    encoder e = {.shape = model->shape, .status = ADCGS_OK, .error = error};
+    encoder e = {.status = ADCGS_OK, .error = error};
     adcgs_range_enc_init(&e.range, out);
     if (layer == 0)
         ADCGS_TRY(adcgs_latents_flags(model, begin, end, encode_flag, &e, error));

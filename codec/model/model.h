@@ -31,7 +31,7 @@
 #define ADCGS_TIME_ROWS_MAX 4096
 #define ADCGS_TIME_WIDTH_MAX 512
 
-/** Channel groups that share a shape code. */
+/** Channel groups whose latents are coded together. */
 typedef enum adcgs_group {
     ADCGS_GROUP_ETA = 0,
     ADCGS_GROUP_FV = 1,
@@ -84,7 +84,6 @@ typedef struct adcgs_model {
 
     /* value = (float)yq * (d * factor), d = step/64, normal binary32 in [2^-40, 2^10]; factor: splat/steps.h */
     float d_fv[ADCGS_NV_MAX], d_sigma[ADCGS_SIGMA_MAX], d_colour[ADCGS_COLOUR_N], d_fg[ADCGS_NG_MAX];
-    uint8_t shape[ADCGS_GROUPS];   /**< 0..3: 0 Gaussian, 1: beta 1.5, 2: beta 1.25, 3: beta 1 */
     int16_t eta_mu[ADCGS_ETA_MAX]; /**< prior of eta, 1/64 step */
     uint8_t eta_si[ADCGS_ETA_MAX];
 

@@ -163,8 +163,6 @@ static adcgs_status check_tables(const adcgs_model *m, adcgs_error *error)
     ADCGS_TRY(check_steps("d_sigma", m->d_sigma, adcgs_sigma_rows(&m->params), error));
     ADCGS_TRY(check_steps("d_colour", m->d_colour, ADCGS_COLOUR_N, error));
     ADCGS_TRY(check_steps("d_fg", m->d_fg, m->params.n_fg, error));
-    for (int i = 0; i < ADCGS_GROUPS; i++)
-        ADCGS_TRY(check_range("shape", m->shape[i], 0, ADCGS_SHAPES - 1, error));
     for (int i = 0; i < m->params.n_eta; i++) {
         ADCGS_TRY(check_range("eta_si", m->eta_si[i], 0, ADCGS_SIGMA_LEVELS - 1, error));
         if (m->eta_mu[i] == INT16_MIN)

@@ -128,20 +128,19 @@ adcgs_status adcgs_tensor_decode(adcgs_range_dec *d, adcgs_tensor *t, adcgs_erro
 
 /* ---- Probability tables (spec annex "Tables") ---- */
 #define ADCGS_SIGMA_LEVELS 64
-#define ADCGS_SHAPES 4
 /** Half-support T of level l: coded values are -T..T and an escape. */
-int adcgs_table_support(int shape, int level);
+int adcgs_table_support(int level);
 /** CDF of level l, 2T+3 entries, 0 .. 65536; symbol k is value k-T, the last symbol is the escape. */
-const uint32_t *adcgs_table_cdf(int shape, int level);
+const uint32_t *adcgs_table_cdf(int level);
 /** Decode / encode the excess of a magnitude over a bound, 0..65534: a prefix of at most 15 ones, then as many bits. */
 int32_t adcgs_excess_dec(adcgs_range_dec *d);
 void adcgs_excess_enc(adcgs_range_enc *e, int32_t excess);
 /** Decode / encode one value under level si (si == 0 is never coded: the value is 0). */
-int32_t adcgs_value_dec(adcgs_range_dec *d, int shape, int si);
-void adcgs_value_enc(adcgs_range_enc *e, int shape, int si, int32_t value);
+int32_t adcgs_value_dec(adcgs_range_dec *d, int si);
+void adcgs_value_enc(adcgs_range_enc *e, int si, int32_t value);
 /** Cost in 1/65536 bit. |value| <= adcgs_value_max(). */
-uint32_t adcgs_value_cost(int shape, int si, int32_t value);
+uint32_t adcgs_value_cost(int si, int32_t value);
 /** Largest |value| that can be coded at a level. */
-int32_t adcgs_value_max(int shape, int si);
+int32_t adcgs_value_max(int si);
 
 #endif

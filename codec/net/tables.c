@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The value tables: one cumulative distribution per shape and sigma level,
+ * The value tables: one cumulative distribution per sigma level,
  * symmetric around the value 0. The compiler builds them from their left
  * halves. Everything is constant data.
  */
@@ -18,16 +18,15 @@
     G1(centre, total, (j) + 4, e) G1(centre, total, (j) + 5, f) G1(centre, total, (j) + 6, g) G1(centre, total, (j) + 7, h)
 
 static const uint32_t entries[VALUE_ENTRIES] = {VALUE_TABLES};
-static const uint16_t offsets[ADCGS_SHAPES * ADCGS_SIGMA_LEVELS] = {VALUE_OFFSETS};
+static const uint16_t offsets[ADCGS_SIGMA_LEVELS] = {VALUE_OFFSETS};
 static const uint8_t supports[ADCGS_SIGMA_LEVELS] = {VALUE_SUPPORTS};
 
-int adcgs_table_support(int shape, int level)
+int adcgs_table_support(int level)
 {
-    (void)shape; /* all shapes share the supports */
     return supports[level];
 }
 
-const uint32_t *adcgs_table_cdf(int shape, int level)
+const uint32_t *adcgs_table_cdf(int level)
 {
-    return entries + offsets[shape * ADCGS_SIGMA_LEVELS + level];
+    return entries + offsets[level];
 }

@@ -8,9 +8,9 @@
 
 #define PREFIX_MAX 15
 
-int32_t adcgs_value_max(int shape, int si)
+int32_t adcgs_value_max(int si)
 {
-    return adcgs_table_support(shape, si) + 1 + 2 * ((1 << PREFIX_MAX) - 1);
+    return adcgs_table_support(si) + 1 + 2 * ((1 << PREFIX_MAX) - 1);
 }
 
 int32_t adcgs_excess_dec(adcgs_range_dec *d)
@@ -21,10 +21,10 @@ int32_t adcgs_excess_dec(adcgs_range_dec *d)
     return (1 << prefix) - 1 + (prefix ? (int32_t)adcgs_range_dec_bits(d, prefix) : 0);
 }
 
-int32_t adcgs_value_dec(adcgs_range_dec *d, int shape, int si)
+int32_t adcgs_value_dec(adcgs_range_dec *d, int si)
 {
-    const int support = adcgs_table_support(shape, si);
-    const int symbol = adcgs_range_dec_symbol(d, adcgs_table_cdf(shape, si), 2 * support + 2);
+    const int support = adcgs_table_support(si);
+    const int symbol = adcgs_range_dec_symbol(d, adcgs_table_cdf(si), 2 * support + 2);
     if (symbol <= 2 * support)
         return symbol - support;
     const uint32_t negative = adcgs_range_dec_bits(d, 1);
@@ -52,11 +52,11 @@ void adcgs_excess_enc(adcgs_range_enc *e, int32_t excess)
         adcgs_range_enc_bits(e, (uint32_t)(excess - ((1 << prefix) - 1)), prefix);
 }
 
-void adcgs_value_enc(adcgs_range_enc *e, int shape, int si, int32_t value)
+void adcgs_value_enc(adcgs_range_enc *e, int si, int32_t value)
 {
-    const int support = adcgs_table_support(shape, si), symbols = 2 * support + 2;
+    const int support = adcgs_table_support(si), symbols = 2 * support + 2;
     const int32_t magnitude = value < 0 ? -value : value;
-    const uint32_t *cdf = adcgs_table_cdf(shape, si);
+    const uint32_t *cdf = adcgs_table_cdf(si);
     if (magnitude <= support) {
         adcgs_range_enc_symbol(e, cdf, symbols, value + support);
         return;
@@ -66,11 +66,11 @@ void adcgs_value_enc(adcgs_range_enc *e, int shape, int si, int32_t value)
     adcgs_excess_enc(e, magnitude - support - 1);
 }
 
-uint32_t adcgs_value_cost(int shape, int si, int32_t value)
+uint32_t adcgs_value_cost(int si, int32_t value)
 {
-    const int support = adcgs_table_support(shape, si);
+    const int support = adcgs_table_support(si);
     const int32_t magnitude = value < 0 ? -value : value;
-    const uint32_t *cdf = adcgs_table_cdf(shape, si);
+    const uint32_t *cdf = adcgs_table_cdf(si);
     if (magnitude <= support)
         return adcgs_bit_cost(cdf[value + support + 1] - cdf[value + support], 1);
     const int prefix = prefix_of(magnitude - support - 1);

@@ -34,7 +34,7 @@ typedef struct adcgs_role_ids {
 } adcgs_role_ids;
 
 /**
- * SEGM: times, network ids, shapes, steps and the prior of eta. A predicted segment inherits the missing values from the previous
+ * SEGM: times, network ids, tiers, steps and the prior of eta. A predicted segment inherits the missing values from the previous
  * one. model->params is set. ticks: its start, end and reach.
  */
 adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_model *model, adcgs_role_ids *ids,

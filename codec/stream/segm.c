@@ -99,11 +99,9 @@ static adcgs_status parse_roles(adcgs_parse *p, const adcgs_params *params, int 
 /** Parse the part of SEGM about the segment's values. */
 static adcgs_status parse_values(adcgs_parse *p, adcgs_model *model)
 {
-    adcgs_syn_shapes shapes;
-    ADCGS_TRY(adcgs_syn_shapes_parse(p, &shapes));
-    for (int g = 0; g < ADCGS_GROUPS; g++)
-        model->shape[g] = shapes.shapes >> 2 * g & 3;
-    model->finest = (uint8_t)(shapes.tiers - 1);
+    adcgs_syn_tiers tiers;
+    ADCGS_TRY(adcgs_syn_tiers_parse(p, &tiers));
+    model->finest = (uint8_t)(tiers.tiers - 1);
     for (int t = 0; t < model->finest; t++) {
         adcgs_syn_growth growth;
         ADCGS_TRY(adcgs_syn_growth_parse(p, &growth));
@@ -125,7 +123,6 @@ static adcgs_status parse_values(adcgs_parse *p, adcgs_model *model)
 /** Copy the values that a predicted segment inherits from the previous one: coding of values, tiers, and the grid. */
 static void inherit_values(adcgs_model *model, const adcgs_model *before)
 {
-    memcpy(model->shape, before->shape, sizeof model->shape);
     memcpy(model->d_fv, before->d_fv, sizeof model->d_fv);
     memcpy(model->d_sigma, before->d_sigma, sizeof model->d_sigma);
     memcpy(model->d_colour, before->d_colour, sizeof model->d_colour);
@@ -180,10 +177,8 @@ adcgs_status adcgs_reach_ticks(const adcgs_stream *stream, const adcgs_model *mo
 
 static adcgs_status write_values(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error)
 {
-    adcgs_syn_shapes shapes = {.tiers = (uint8_t)(model->finest + 1)};
-    for (int g = 0; g < ADCGS_GROUPS; g++)
-        shapes.shapes |= (uint16_t)(model->shape[g] << 2 * g);
-    ADCGS_TRY(adcgs_syn_shapes_write(out, "SEGM", &shapes, error));
+    const adcgs_syn_tiers tiers = {(uint8_t)(model->finest + 1)};
+    ADCGS_TRY(adcgs_syn_tiers_write(out, "SEGM", &tiers, error));
     for (int t = 0; t < model->finest; t++) {
         const adcgs_syn_growth growth = {model->growth[t]};
         ADCGS_TRY(adcgs_syn_growth_write(out, "SEGM", &growth, error));

@@ -79,9 +79,7 @@
     F(U32, reach_ticks, 0, 4294967295.0)                   \
     F(U8, predicted, 0, 1)                                 \
     F(U16, roles, 0, (1 << ADCGS_ROLES) - 1)
-#define ADCGS_LIST_SHAPES(F, V) \
-    F(U16, shapes, 0, 65535)    \
-    F(U8, tiers, 1, ADCGS_TIERS_MAX)
+#define ADCGS_LIST_TIERS(F, V) F(U8, tiers, 1, ADCGS_TIERS_MAX)
 #define ADCGS_LIST_GROWTH(F, V) F(U8, growth, 0, ADCGS_GROWTH_MAX)
 #define ADCGS_LIST_STEP_FORM(F, V) F(U8, step_form, 0, 3)
 #define ADCGS_LIST_STEP(F, V) F(F32, step, 0x1p-40, 0x1p10)
@@ -136,7 +134,7 @@
     X(LAYER_BIAS, adcgs_syn_layer_bias)     \
     X(LAYER_E24, adcgs_syn_layer_e24)       \
     X(SEGM, adcgs_syn_segm)                 \
-    X(SHAPES, adcgs_syn_shapes)             \
+    X(TIERS, adcgs_syn_tiers)               \
     X(GROWTH, adcgs_syn_growth)             \
     X(STEP_FORM, adcgs_syn_step_form)       \
     X(STEP, adcgs_syn_step)                 \

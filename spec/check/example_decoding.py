@@ -136,10 +136,10 @@ def latent_table(model):
 def coded_table(watch):
     """Latents in the order of decoding, with their priors and the decoded values."""
     rows, values = [], iter(watch.calls["value"])
-    for n, ((d, shape, mu, si), y) in enumerate(watch.calls["latent"], 1):
+    for n, ((d, mu, si), y) in enumerate(watch.calls["latent"], 1):
         q = next(values)[1] if d is not None else 0
         if n <= MOST_CODED:
-            rows.append((n, shape, si, mu, q, y))
+            rows.append((n, si, mu, q, y))
     if len(watch.calls["latent"]) > MOST_CODED:
-        rows.append(("…", "", "", "", "", "%d more" % (len(watch.calls["latent"]) - MOST_CODED)))
-    return [".Latents in the order of decoding"] + table("1,1,1,2,2,2", ("#", "shape", "si", "mu", "value q", "y~q~"), rows)
+        rows.append(("…", "", "", "", "%d more" % (len(watch.calls["latent"]) - MOST_CODED)))
+    return [".Latents in the order of decoding"] + table("1,1,2,2,2", ("#", "si", "mu", "value q", "y~q~"), rows)

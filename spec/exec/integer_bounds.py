@@ -34,7 +34,7 @@ def decisions(b):
 
 
 def values(b):
-    tables = [t for shape in b.m.names["VALUE_TABLE"] for t in shape]
+    tables = b.m.names["VALUE_TABLE"]
     assert all(t[0] == 0 and t[-1] == 65536 and all(x < y for x, y in zip(t, t[1:])) for t in tables)
     support = max((len(t) - 3) // 2 for t in tables)
     largest = support + 65535

@@ -124,14 +124,14 @@ class Machine:
     def _load_tables(self):
         """STRETCH and SQUASH from a file of annex "Tables"; VALUE_TABLE is filled after its process is compiled."""
         rows = self._rows("logistic.csv")
-        values = [[None] * 64 for _ in range(4)]
+        values = [None] * 64
         return {"VALUE_TABLE": values, "STRETCH": [row[1] for row in rows], "SQUASH": [row[2] for row in rows]}
 
     def _fill_values(self):
-        """VALUE_TABLE[shape][si] from the rows of values.csv, as the text completes them."""
+        """VALUE_TABLE[si] from the rows of values.csv, as the text completes them."""
         if "value_table" in self.program.processes:
             for row in self._rows("values.csv"):
-                self.names["VALUE_TABLE"][row[0]][row[1]] = self.names["value_table"](row)
+                self.names["VALUE_TABLE"][row[0]] = self.names["value_table"](row)
 
     def _rows(self, name):
         with open(os.path.join(self.tables, name), encoding="ascii") as file:

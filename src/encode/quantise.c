@@ -223,8 +223,7 @@ static void quantise_site(void *user, const adcgs_latent_site *s)
         double n = rint(wanted);
         n = n >= most ? most : n >= -most ? n : -most; /* keeps the value in range for any n */
         if (curvature)
-            n = adcgs_rdo_level(q->model->shape[s->group], s->si[c], wanted, (int32_t)n, 0.5 * curvature[at] * step * step,
-                                q->o->rdo->lambda_bit);
+            n = adcgs_rdo_level(s->si[c], wanted, (int32_t)n, 0.5 * curvature[at] * step * step, q->o->rdo->lambda_bit);
         s->yq[c] = (int16_t)adcgs_clip(64 * (int32_t)n + mu, 32767);
         if (q->o->mu)
             q->o->mu[group][at] = adcgs_mean_pack((float)mu, most == 0);
@@ -279,7 +278,6 @@ adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adc
     set_anchors(model, f);
     set_tiers(model, f);
     set_steps(model, f);
-    memcpy(model->shape, f->density, sizeof model->shape);
     ADCGS_TRY(set_networks(model, f, error));
     return quantise_latents(model, f, options, error);
 }

@@ -10,6 +10,6 @@
  * wanted: position of the value, in levels; nearest: the level chosen if bits were free, 0 if si is 0; weight: loss per squared
  * level, >= 0.
  */
-int32_t adcgs_rdo_level(int shape, int si, double wanted, int32_t nearest, double weight, double lambda_bit);
+int32_t adcgs_rdo_level(int si, double wanted, int32_t nearest, double weight, double lambda_bit);
 
 #endif

@@ -72,9 +72,8 @@ typedef struct adcgs_fmodel {
     uint8_t finest, growth[ADCGS_TIERS_MAX - 1]; /**< as in adcgs_model */
     float centre[ADCGS_BODIES_MAX][3];           /**< centres of rotation of the bodies; see body_trajectories.h */
     adcgs_param param[ADCGS_P_COUNT];
-    adcgs_mlp mlp[ADCGS_P_COUNT];  /**< of the network groups */
-    float *step[ADCGS_P_ANCHOR];   /**< quantiser steps per feature row of a group, from ADCGS_P_STEP */
-    uint8_t density[ADCGS_GROUPS]; /**< shape of the density of each group of channels, as in adcgs_model.shape */
+    adcgs_mlp mlp[ADCGS_P_COUNT]; /**< of the network groups */
+    float *step[ADCGS_P_ANCHOR];  /**< quantiser steps per feature row of a group, from ADCGS_P_STEP */
 } adcgs_fmodel;
 
 /**

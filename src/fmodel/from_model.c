@@ -130,7 +130,6 @@ adcgs_status adcgs_fmodel_from_model(adcgs_fmodel **out, const adcgs_model *mode
                                   model->n, seed, error));
     adcgs_fmodel *f = *out;
     f->follows = 1;
-    memcpy(f->density, model->shape, sizeof f->density);
     memcpy(f->growth, model->growth, sizeof f->growth);
     f->finest = model->finest;
     take_steps(f, model);

@@ -28,7 +28,7 @@ typedef struct adcgs_pass {
     float *mu[ADCGS_P_ANCHOR];   /**< predicted means for ADCGS_QUANT_ROUND, packed */
     float *factor;               /**< [groups][steps][64] of adaptive steps; steps: adcgs_params_steps(). Used like mu */
     adcgs_quant quant;           /**< of the last forward pass */
-    adcgs_rate_table *tables;    /**< the coder's costs: [ADCGS_SHAPES] */
+    adcgs_rate_table *table;     /**< the coder's costs */
     float *keep;                 /**< the model's keep without dropped-out primitives: [slots] */
     float *act;                  /**< activations, act_stride floats per group */
     size_t act_stride;
@@ -92,8 +92,5 @@ void adcgs_pass_backward(adcgs_pass *pass, adcgs_fmodel *f, adcgs_deform deform,
  * gradients are unchanged.
  */
 void adcgs_pass_rate(adcgs_pass *pass, adcgs_fmodel *f, adcgs_rate *rate);
-
-/** Sets each channel group's density to the shape with the lowest adcgs_pass_rate(); rate receives the result. */
-void adcgs_pass_densities(adcgs_pass *pass, adcgs_fmodel *f, adcgs_rate *rate);
 
 #endif

@@ -267,23 +267,3 @@ void adcgs_pass_rate(adcgs_pass *p, adcgs_fmodel *f, adcgs_rate *rate)
     adcgs_pool_run(p->pool, backward_chunk, &job, p->chunks);
     sum_rate(p, 1, rate);
 }
-
-void adcgs_pass_densities(adcgs_pass *p, adcgs_fmodel *f, adcgs_rate *rate)
-{
-    uint8_t best[ADCGS_GROUPS] = {0};
-    adcgs_rate least = {.total = 0};
-    for (int shape = 0; shape < ADCGS_SHAPES; shape++) {
-        memset(f->density, shape, sizeof f->density);
-        adcgs_pass_rate(p, f, rate);
-        for (int i = 0; i < ADCGS_GROUPS; i++)
-            if (shape == 0 || rate->bits[i] < least.bits[i]) {
-                least.bits[i] = rate->bits[i];
-                best[i] = (uint8_t)shape;
-            }
-    }
-    memcpy(f->density, best, sizeof best);
-    *rate = least;
-    rate->total = 0;
-    for (int i = 0; i < ADCGS_GROUPS; i++)
-        rate->total += rate->bits[i];
-}

@@ -91,18 +91,17 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
     p->scratch = adcgs_alloc(NULL, p->scratch_stride * (size_t)adcgs_pool_threads(pool), sizeof(float), error);
     p->partial = adcgs_alloc(NULL, at * (size_t)p->chunks, sizeof(float), error);
     p->bits = adcgs_alloc(NULL, (size_t)p->chunks * ADCGS_GROUPS, sizeof(double), error);
-    p->tables = adcgs_alloc(NULL, ADCGS_SHAPES, sizeof *p->tables, error);
+    p->table = adcgs_alloc(NULL, 1, sizeof *p->table, error);
     p->time_code = adcgs_alloc(NULL, (size_t)adcgs_fmodel_time_columns(&f->params) + 1, sizeof(float), error);
     for (int i = 0; i < 2; i++)
         p->time_bias[i] = adcgs_alloc(NULL, 1024, sizeof(float), error);
     *out = p;
-    if (!p->scratch || !p->partial || !p->bits || !p->tables || !p->time_code || !p->time_bias[0] || !p->time_bias[1] ||
+    if (!p->scratch || !p->partial || !p->bits || !p->table || !p->time_code || !p->time_bias[0] || !p->time_bias[1] ||
         alloc_groups(p, f, error) != ADCGS_OK) {
         adcgs_pass_free(out);
         return adcgs_alloc_status(error);
     }
-    for (int i = 0; i < ADCGS_SHAPES; i++)
-        adcgs_rate_table_init(&p->tables[i], i);
+    adcgs_rate_table_init(p->table);
     return ADCGS_OK;
 }
 
@@ -115,7 +114,7 @@ void adcgs_pass_free(adcgs_pass **pass)
     adcgs_free(NULL, p->scratch);
     adcgs_free(NULL, p->partial);
     adcgs_free(NULL, p->bits);
-    adcgs_free(NULL, p->tables);
+    adcgs_free(NULL, p->table);
     adcgs_free(NULL, p->time_code);
     for (int i = 0; i < 2; i++)
         adcgs_free(NULL, p->time_bias[i]);

@@ -144,7 +144,7 @@ static void rate_rows(const job *j, const coded *c, const float *out, float *dou
         .dmu = dout,
         .dsi = dout + half,
         .x = c->x,
-        .table = &j->p->tables[j->f->density[c->stream]],
+        .table = j->p->table,
         .mean = j->p->mu[c->param] + at,
     };
     for (size_t i = 0; factor && i < half; i++) {

@@ -69,8 +69,7 @@ enum { ADCGS_LEVEL_MAX = 500, ADCGS_RATE_CELLS = ADCGS_LEVEL_MAX + 2 };
 typedef struct adcgs_rate_table {
     adcgs_rate_cell cell[ADCGS_SIGMA_LEVELS][ADCGS_RATE_CELLS];
 } adcgs_rate_table;
-/** Fills in the table of a density shape. */
-void adcgs_rate_table_init(adcgs_rate_table *table, int shape);
+void adcgs_rate_table_init(adcgs_rate_table *table);
 
 /** Rows of 64 values to code, with an entropy network's outputs. */
 typedef struct adcgs_rate_io {
@@ -81,7 +80,7 @@ typedef struct adcgs_rate_io {
     float scale;
     float *dy, *dmu, *dsi;         /**< dy += scale*dbits/dy; dmu, dsi overwritten with scale*dbits/dmu, /dsi */
     float *x;                      /**< receives the values as inputs of later networks; may be NULL */
-    const adcgs_rate_table *table; /**< rate_exact: of the group's shape */
+    const adcgs_rate_table *table; /**< rate_exact: the coder's */
     float *mean;                   /**< rate_exact: receives the means, packed */
 } adcgs_rate_io;
 

@@ -33,49 +33,49 @@ static double smooth_bits(double a, double level)
     return -log2(inside * (1 - 0x1p-12) + 0x1p-14 * width / (width * width + a * a));
 }
 
-static double table_bits(int shape, int level, int a)
+static double table_bits(int level, int a)
 {
-    return adcgs_value_cost(shape, level, a) * 0x1p-16;
+    return adcgs_value_cost(level, a) * 0x1p-16;
 }
 
 /** True if the table's differences are meaningful at this cell. */
-static int is_live(int shape, int level, int a)
+static int is_live(int level, int a)
 {
-    return a <= adcgs_table_support(shape, level) && table_bits(shape, level, a) < FLAT_BITS;
+    return a <= adcgs_table_support(level) && table_bits(level, a) < FLAT_BITS;
 }
 
 /**
  * Difference over a quarter of sigma to both sides, because adjacent entries of a wide table differ by less than their rounding.
  */
-static double by_value(int shape, int level, int a)
+static double by_value(int level, int a)
 {
     const int reach = (int)fmax(1, sigma_of(level) / 4);
     if (a == 0)
         return 0;
-    if (!is_live(shape, level, a))
+    if (!is_live(level, a))
         return (smooth_bits(a + ASIDE, level) - smooth_bits(a - ASIDE, level)) / 0.02;
     int high = a + reach;
-    while (!is_live(shape, level, high))
+    while (!is_live(level, high))
         high--;
-    return (table_bits(shape, level, high) - table_bits(shape, level, abs(a - reach))) / (high - (a - reach));
+    return (table_bits(level, high) - table_bits(level, abs(a - reach))) / (high - (a - reach));
 }
 
-static double by_level(int shape, int level, int a)
+static double by_level(int level, int a)
 {
-    const int low = level > 0 && is_live(shape, level - 1, a) ? level - 1 : level;
-    const int high = level < ADCGS_SIGMA_LEVELS - 1 && is_live(shape, level + 1, a) ? level + 1 : level;
-    if (!is_live(shape, level, a) || low == high)
+    const int low = level > 0 && is_live(level - 1, a) ? level - 1 : level;
+    const int high = level < ADCGS_SIGMA_LEVELS - 1 && is_live(level + 1, a) ? level + 1 : level;
+    if (!is_live(level, a) || low == high)
         return (smooth_bits(a, level + ASIDE) - smooth_bits(a, level - ASIDE)) / 0.02;
-    return (table_bits(shape, high, a) - table_bits(shape, low, a)) / (high - low);
+    return (table_bits(high, a) - table_bits(low, a)) / (high - low);
 }
 
-void adcgs_rate_table_init(adcgs_rate_table *table, int shape)
+void adcgs_rate_table_init(adcgs_rate_table *table)
 {
     for (int level = 0; level < ADCGS_SIGMA_LEVELS; level++)
         for (int a = 0; a < ADCGS_RATE_CELLS; a++) {
             adcgs_rate_cell *cell = &table->cell[level][a];
-            cell->bits = level > 0 ? (float)table_bits(shape, level, a) : 0;
-            cell->by_value = (float)by_value(shape, level, a);
-            cell->by_level = (float)by_level(shape, level, a);
+            cell->bits = level > 0 ? (float)table_bits(level, a) : 0;
+            cell->by_value = (float)by_value(level, a);
+            cell->by_level = (float)by_level(level, a);
         }
 }

@@ -49,7 +49,7 @@ static adcgs_status round_and_freeze(adcgs_trainer *t, double progress, adcgs_er
     const adcgs_quantise_options means = {.cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor};
     if (!t->stage.rounding && adcgs_stage_has_begun(c, ADCGS_STAGE_ROUND, progress)) {
         ADCGS_TRY(round_values(t, error));
-        adcgs_level_densities(t);
+        adcgs_level_bits(t);
         ADCGS_TRY(t->quantise(t->f, &means, error));
         ADCGS_TRY(adcgs_rate_target_steps(t, 1, error));
     } else if (t->stage.rounding && !t->stage.frozen && t->run.iteration % MEANS_EVERY == 0) {

@@ -300,7 +300,7 @@ static void trainers_own(const bench *b)
                 .v = bench_floats(PARAMETERS)};
     v.table = (void *)bench_floats(sizeof *v.table / sizeof(float));
     adcgs_train_dsp_init(&v.dsp, b->level);
-    adcgs_rate_table_init(v.table, 0);
+    adcgs_rate_table_init(v.table);
     for (int i = 0; i < ROWS; i++)
         v.step[i] = 0.1f;
     for (int i = 0; i < 64; i++)

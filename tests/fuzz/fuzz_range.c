@@ -23,7 +23,7 @@ typedef struct coder {
 static int32_t code_one(coder *c, int i, int32_t v)
 {
     const int op = c->program[i % PROGRAM], form = op >> 2;
-    const int n = 1 + form % 16, shape = form % ADCGS_SHAPES, si = 1 + (op * 7 + i) % (ADCGS_SIGMA_LEVELS - 1);
+    const int n = 1 + form % 16, si = 1 + (op * 7 + i) % (ADCGS_SIGMA_LEVELS - 1);
     const uint32_t p1 = 1 + (uint32_t)(op * 257 % 65535);
     switch (op & 3) {
     case 0:
@@ -40,8 +40,8 @@ static int32_t code_one(coder *c, int i, int32_t v)
         return c->enc ? v : adcgs_adaptive_dec(c->dec, &c->contexts[form % 16]);
     default:
         if (c->enc)
-            adcgs_value_enc(c->enc, shape, si, v);
-        return c->enc ? v : adcgs_value_dec(c->dec, shape, si);
+            adcgs_value_enc(c->enc, si, v);
+        return c->enc ? v : adcgs_value_dec(c->dec, si);
     }
 }
 

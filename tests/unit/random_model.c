@@ -114,8 +114,6 @@ static void random_tables(adcgs_model *m, uint64_t *state)
     random_steps(m->d_sigma, adcgs_sigma_rows(&m->params), state);
     random_steps(m->d_colour, ADCGS_COLOUR_N, state);
     random_steps(m->d_fg, m->params.n_fg, state);
-    for (int i = 0; i < ADCGS_GROUPS; i++)
-        m->shape[i] = (uint8_t)draw(state, 0, ADCGS_SHAPES - 1);
     for (int i = 0; i < m->params.n_eta; i++) {
         m->eta_mu[i] = (int16_t)draw(state, -400, 400);
         m->eta_si[i] = (uint8_t)draw(state, 0, ADCGS_SIGMA_LEVELS - 1);
@@ -132,7 +130,7 @@ static void draw_site(void *user, const adcgs_latent_site *site)
     for (int c = 0; c < site->count; c++) {
         int32_t n = 0;
         if (site->si[c] > 0) {
-            const int spread = 1 + site->si[c] / 8, far = adcgs_value_max(0, site->si[c]);
+            const int spread = 1 + site->si[c] / 8, far = adcgs_value_max(site->si[c]);
             n = draw(state, 0, 199) ? draw(state, -spread, spread) : draw(state, -ADCGS_MIN(far, 700), ADCGS_MIN(far, 700));
         }
         site->yq[c] = (int16_t)adcgs_clip(64 * n + site->mu[c], 32767);

@@ -25,7 +25,7 @@
 /** Version of the bitstream that is decoded (clause "HEAD"). */
 #define ADCGS_BITSTREAM_MAJOR 0
 /** Version of the bitstream, second number. */
-#define ADCGS_BITSTREAM_MINOR 11
+#define ADCGS_BITSTREAM_MINOR 12
 
 #ifdef __cplusplus
 extern "C" {

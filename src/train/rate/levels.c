@@ -30,12 +30,9 @@ adcgs_status adcgs_level_choose(adcgs_trainer *t, double strength, adcgs_error *
     return t->quantise(t->f, &options, error);
 }
 
-void adcgs_level_densities(adcgs_trainer *t)
+void adcgs_level_bits(adcgs_trainer *t)
 {
     adcgs_rate rate;
-    if (t->f->follows)
-        adcgs_pass_rate(t->pass, t->f, &rate);
-    else
-        adcgs_pass_densities(t->pass, t->f, &rate);
+    adcgs_pass_rate(t->pass, t->f, &rate);
     memcpy(t->rate.mean_bits, rate.bits, sizeof rate.bits);
 }

@@ -17,7 +17,7 @@ adcgs_status adcgs_level_costs(const adcgs_trainer *trainer, double strength, ad
  */
 adcgs_status adcgs_level_choose(adcgs_trainer *trainer, double strength, adcgs_error *error);
 
-/** Sets each channel group's density to the one that codes its rounded values in the fewest bits, and stores these bits. */
-void adcgs_level_densities(adcgs_trainer *trainer);
+/** Stores the bits of the coder for the rounded values of each channel group. */
+void adcgs_level_bits(adcgs_trainer *trainer);
 
 #endif

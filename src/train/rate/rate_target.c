@@ -34,15 +34,15 @@ typedef struct window {
 } window;
 
 /**
- * Quantises with a strength and sets the matching densities. Starts from the nearest levels, so earlier choices have no effect.
+ * Quantises with a strength and stores the bits. Starts from the nearest levels, so earlier choices have no effect.
  */
 static adcgs_status settle(adcgs_trainer *t, double strength, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_level_choose(t, 0, error));
-    adcgs_level_densities(t);
+    adcgs_level_bits(t);
     if (strength > 0) {
         ADCGS_TRY(adcgs_level_choose(t, strength, error));
-        adcgs_level_densities(t);
+        adcgs_level_bits(t);
     }
     return ADCGS_OK;
 }
@@ -116,7 +116,7 @@ static void scale_steps(adcgs_trainer *t, double by)
     for (size_t i = 0; i < steps->n; i++)
         steps->p[i] += (float)by;
     adcgs_fmodel_take_steps(t->f);
-    adcgs_level_densities(t);
+    adcgs_level_bits(t);
 }
 
 adcgs_status adcgs_rate_target_steps(adcgs_trainer *t, int first, adcgs_error *error)

@@ -81,9 +81,8 @@ static const char *check_anchors(const adcgs_fmodel *f)
         return "an anchor's flag is neither 0 nor 1";
     if (!are_at_most(f->body, lanes, f->params.bodies) || !are_at_most(f->tier, lanes, f->finest))
         return "an anchor belongs to a body or a tier that does not exist";
-    if (!are_at_most(f->growth, sizeof f->growth, ADCGS_GROWTH_MAX) ||
-        !are_at_most(f->density, sizeof f->density, ADCGS_SHAPES - 1))
-        return "a growth or a density is out of range";
+    if (!are_at_most(f->growth, sizeof f->growth, ADCGS_GROWTH_MAX))
+        return "a growth is out of range";
     return NULL;
 }
 

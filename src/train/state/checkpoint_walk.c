@@ -147,7 +147,6 @@ static void walk_arrays(adcgs_checkpoint_walk *w, adcgs_trainer *t)
 {
     adcgs_fmodel *f = t->f;
     const size_t lanes = (size_t)f->groups * ADCGS_LANES, slots = lanes * f->params.k;
-    adcgs_checkpoint_visit(w, f->density, sizeof f->density);
     adcgs_checkpoint_visit(w, f->keep, slots * sizeof(float));
     adcgs_checkpoint_visit(w, f->moving, lanes * sizeof(float));
     adcgs_checkpoint_visit(w, f->body, lanes);

@@ -10,7 +10,7 @@
 #include "train/state/visit.h"
 
 /** Format number; the first number that the walk visits, as 64 bits; definition, one more with each change. */
-enum { ADCGS_CHECKPOINT_FORMAT = 35 };
+enum { ADCGS_CHECKPOINT_FORMAT = 36 };
 
 /** Stores the whole state. */
 void adcgs_checkpoint_walk_all(adcgs_checkpoint_walk *w, const adcgs_trainer *trainer);

@@ -213,9 +213,9 @@ static void test_writer_refuses(void **state)
         const char *why;
         void *place;
     } const changes[] = {
-        {"grid", &m->depth},        {"grid", &m->voxel},       {"grid", &m->origin[1]}, {"shapes", &m->shape[2]},
-        {"shapes", &m->eta_mu[0]},  {"shapes", &m->eta_si[0]}, {"steps", &m->d_fv[2]},  {"steps", &m->d_sigma[5]},
-        {"steps", &m->d_colour[0]}, {"steps", &m->d_fg[3]},
+        {"grid", &m->depth},       {"grid", &m->voxel},        {"grid", &m->origin[1]},
+        {"priors", &m->eta_mu[0]}, {"priors", &m->eta_si[0]},  {"steps", &m->d_fv[2]},
+        {"steps", &m->d_sigma[5]}, {"steps", &m->d_colour[0]}, {"steps", &m->d_fg[3]},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(changes); i++) {
         *(uint8_t *)changes[i].place ^= 1;

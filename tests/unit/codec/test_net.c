@@ -20,10 +20,10 @@
 static void check_csv_row(const char *line)
 {
     char *end;
-    const int shape = (int)strtol(line, &end, 10), level = (int)strtol(end + 1, &end, 10);
+    const int level = (int)strtol(line, &end, 10);
     const int support = (int)strtol(end + 1, &end, 10);
-    const uint32_t total = (uint32_t)strtoul(end + 1, &end, 10), *cdf = adcgs_table_cdf(shape, level);
-    assert_int_equal(adcgs_table_support(shape, level), support);
+    const uint32_t total = (uint32_t)strtoul(end + 1, &end, 10), *cdf = adcgs_table_cdf(level);
+    assert_int_equal(adcgs_table_support(level), support);
     for (int i = 0; i <= support; i++) {
         const uint32_t c = (uint32_t)strtoul(end + 1, &end, 10);
         assert_int_equal(cdf[i], c);
@@ -50,22 +50,21 @@ static void test_tables_equal_csv(void **state)
         rows++;
     }
     fclose(file);
-    assert_int_equal(rows, ADCGS_SHAPES * ADCGS_SIGMA_LEVELS);
+    assert_int_equal(rows, ADCGS_SIGMA_LEVELS);
 }
 
 static void code_extremes(adcgs_range_enc *e, adcgs_range_dec *d)
 {
-    for (int shape = 0; shape < ADCGS_SHAPES; shape++)
-        for (int si = 1; si < ADCGS_SIGMA_LEVELS; si++) {
-            const int support = adcgs_table_support(shape, si), largest = adcgs_value_max(shape, si);
-            const int values[] = {0,    1,     -1,    support, -support,    support + 1, -support - 1, support + 2,
-                                  1000, -1023, 32767, -32768,  largest - 1, largest,     -largest};
-            for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)
-                if (e)
-                    adcgs_value_enc(e, shape, si, values[i]);
-                else
-                    assert_int_equal(adcgs_value_dec(d, shape, si), values[i]);
-        }
+    for (int si = 1; si < ADCGS_SIGMA_LEVELS; si++) {
+        const int support = adcgs_table_support(si), largest = adcgs_value_max(si);
+        const int values[] = {0,    1,     -1,    support, -support,    support + 1, -support - 1, support + 2,
+                              1000, -1023, 32767, -32768,  largest - 1, largest,     -largest};
+        for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)
+            if (e)
+                adcgs_value_enc(e, si, values[i]);
+            else
+                assert_int_equal(adcgs_value_dec(d, si), values[i]);
+    }
 }
 
 /* REQ-PARS-006, REQ-PARS-011 */
@@ -95,10 +94,10 @@ static void test_value_cost(void **state)
     adcgs_range_enc e;
     adcgs_range_enc_init(&e, &b);
     for (int i = 0; i < 100000; i++) {
-        const int shape = i & 3, si = 1 + (int)(random32(&seed) % 63);
-        const int32_t value = draw(&seed, i % 10 ? adcgs_table_support(shape, si) : i % 100 ? 600 : adcgs_value_max(shape, si));
-        adcgs_value_enc(&e, shape, si, value);
-        cost += adcgs_value_cost(shape, si, value);
+        const int si = 1 + (int)(random32(&seed) % 63);
+        const int32_t value = draw(&seed, i % 10 ? adcgs_table_support(si) : i % 100 ? 600 : adcgs_value_max(si));
+        adcgs_value_enc(&e, si, value);
+        cost += adcgs_value_cost(si, value);
     }
     adcgs_range_enc_finish(&e);
     const double bits = 8.0 * (double)b.size, predicted = (double)cost / 65536;
@@ -118,8 +117,8 @@ static void test_damaged_values_end(void **state)
         adcgs_range_dec d;
         adcgs_range_dec_init(&d, bytes, sizeof bytes);
         for (int i = 0; i < 1000; i++) {
-            const int shape = i & 3, si = 1 + (int)(random32(&seed) % 63), largest = adcgs_value_max(shape, si);
-            const int32_t value = adcgs_value_dec(&d, shape, si);
+            const int si = 1 + (int)(random32(&seed) % 63), largest = adcgs_value_max(si);
+            const int32_t value = adcgs_value_dec(&d, si);
             assert_true(value >= -largest && value <= largest);
         }
         assert_int_equal(adcgs_range_dec_finish(&d, NULL), ADCGS_ERR_DATA);

@@ -72,9 +72,9 @@ static adcgs_trainer *copy(int frozen)
 
 /* ---- One level ---- */
 
-static double price(int shape, int si, double wanted, int32_t n, double weight, double lambda_bit)
+static double price(int si, double wanted, int32_t n, double weight, double lambda_bit)
 {
-    return weight * (n - wanted) * (n - wanted) + lambda_bit * adcgs_value_cost(shape, si, n) / 65536;
+    return weight * (n - wanted) * (n - wanted) + lambda_bit * adcgs_value_cost(si, n) / 65536;
 }
 
 /** No level in between is cheaper, for any table. If bits cost nothing, the nearest level is chosen. */
@@ -82,18 +82,18 @@ static void levels_are_the_cheapest(void **state)
 {
     (void)state;
     for (uint32_t trial = 0; trial < 4000; trial++) {
-        const int shape = (int)(trial % ADCGS_SHAPES), si = 1 + (int)(adcgs_mix32(trial) % 63);
+        const int si = 1 + (int)(adcgs_mix32(trial) % 63);
         const double wanted = ldexp(adcgs_random_unit(1, 1, trial) - 0.5, (int)(trial % 9));
         const double weight = exp(8 * adcgs_random_unit(1, 2, trial) - 6), bit = trial % 5 ? 0.1 : 0;
-        const int32_t nearest = (int32_t)rint(wanted), n = adcgs_rdo_level(shape, si, wanted, nearest, weight, bit);
+        const int32_t nearest = (int32_t)rint(wanted), n = adcgs_rdo_level(si, wanted, nearest, weight, bit);
         assert_in_range(nearest < 0 ? -n : n, 0, nearest < 0 ? -nearest : nearest);
         for (int32_t other = ADCGS_MIN(nearest, 0); other <= ADCGS_MAX(nearest, 0); other++)
-            assert_true(price(shape, si, wanted, n, weight, bit) <= price(shape, si, wanted, other, weight, bit));
+            assert_true(price(si, wanted, n, weight, bit) <= price(si, wanted, other, weight, bit));
         if (bit == 0)
             assert_int_equal(n, nearest);
     }
-    assert_int_equal(adcgs_rdo_level(0, 0, 0.9, 0, 1, 1), 0);
-    assert_int_equal(adcgs_rdo_level(0, 30, 7.2, 7, 0, 1), 0);
+    assert_int_equal(adcgs_rdo_level(0, 0.9, 0, 1, 1), 0);
+    assert_int_equal(adcgs_rdo_level(30, 7.2, 7, 0, 1), 0);
 }
 
 /* ---- Curvature ---- */

@@ -72,8 +72,6 @@ static inline void make(fixture *x, adcgs_cpu_level cpu, int hidden, double size
             randomise(x->f->param[i].p, x->f->param[i].n, i < ADCGS_P_ANCHOR ? 0.7 : size, (uint64_t)i);
     for (size_t i = 0; i < x->f->param[ADCGS_P_ETA].n; i++)
         x->f->param[ADCGS_P_ETA].p[i] *= 30; /* eta's step is 1 */
-    for (int i = 0; i < ADCGS_GROUPS; i++)
-        x->f->density[i] = (uint8_t)((i + hidden) % ADCGS_SHAPES);
     x->f->keep[1 * 64 + 9] = x->f->keep[2 * 64 + 63] = 0;
     x->f->moving[5] = 0;
     set_rounding(x->f);

@@ -226,7 +226,7 @@ static void rates(call *c)
     if (!table) {
         table = malloc(sizeof *table);
         assert_non_null(table);
-        adcgs_rate_table_init(table, 0);
+        adcgs_rate_table_init(table);
     }
     adcgs_rate_io io = {.n = n,
                         .y = given(c, many),

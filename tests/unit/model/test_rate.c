@@ -22,7 +22,7 @@
 
 typedef struct counter {
     const adcgs_model *model;
-    double bits[ADCGS_GROUPS], with[ADCGS_SHAPES][ADCGS_GROUPS]; /* under the model's shapes; under each shape */
+    double bits[ADCGS_GROUPS];
     int levels[ADCGS_SIGMA_LEVELS];
 } counter;
 
@@ -31,12 +31,8 @@ static void count_site(void *user, const adcgs_latent_site *s)
     counter *c = user;
     for (int i = 0; i < s->count; i++) {
         c->levels[s->si[i]]++;
-        for (int shape = 0; s->si[i] && shape < ADCGS_SHAPES; shape++) {
-            const double bits = adcgs_value_cost(shape, s->si[i], (s->yq[i] - s->mu[i]) / 64) * 0x1p-16;
-            c->with[shape][s->group] += bits;
-            if (shape == c->model->shape[s->group])
-                c->bits[s->group] += bits;
-        }
+        if (s->si[i])
+            c->bits[s->group] += adcgs_value_cost(s->si[i], (s->yq[i] - s->mu[i]) / 64) * 0x1p-16;
     }
 }
 
@@ -199,7 +195,6 @@ static void exact_gradients_follow_the_smooth_ones(void **state)
     fixture x;
     float *smooth[ADCGS_P_COUNT], *exact[ADCGS_P_COUNT];
     make(&x, (adcgs_cpu_level)(uintptr_t)*state, 2, 0.2, 0);
-    memset(x.f->density, 0, sizeof x.f->density);
     rate_gradients(&x, ADCGS_QUANT_NONE, smooth);
     rate_gradients(&x, ADCGS_QUANT_ROUND, exact);
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
@@ -216,37 +211,6 @@ static void exact_gradients_follow_the_smooth_ones(void **state)
         free(smooth[i]);
         free(exact[i]);
     }
-    clear(&x);
-}
-
-/** Each group of channels gets the shape that codes it in the fewest bits: a peaked one for Laplacian values. */
-static void shapes_fit_the_values(void **state)
-{
-    fixture x;
-    adcgs_model model;
-    adcgs_rate rate;
-    counter real;
-    make(&x, (adcgs_cpu_level)(uintptr_t)*state, 1, 0, 0);
-    /* Means 0 and sigma level 32, or 2.78 steps. */
-    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
-        for (size_t j = 0; j < x.f->param[i].n; j++) {
-            const double u = adcgs_random_unit(5, (uint64_t)i, j) - 0.5;
-            const double laplace = (u < 0 ? 1 : -1) * log(1 - 2 * fabs(u)) / sqrt(2);
-            const double normal = adcgs_random_normal(6, (uint64_t)i, 2 * j) + adcgs_random_normal(6, (uint64_t)i, 2 * j + 1);
-            const int row = (int)(j / 64) % adcgs_fmodel_rows(x.f, i);
-            const int peaked = i == ADCGS_P_FV || (i == ADCGS_P_FG && row % 8 < 2);
-            x.f->param[i].p[j] = (float)(2.78 * (peaked ? laplace : normal / sqrt(2))) * x.f->step[i][row];
-        }
-    adcgs_pass_densities(x.pass, x.f, &rate);
-    assert_int_equal(adcgs_quantise(&model, x.f, &(adcgs_quantise_options){.cpu = ADCGS_CPU_SCALAR}, &error), ADCGS_OK);
-    count_bits(&real, &model);
-    for (int g = 0; g < ADCGS_GROUPS; g++) {
-        assert_float_equal(rate.bits[g], real.bits[g], 1e-5 * real.bits[g]);
-        for (int shape = 0; shape < ADCGS_SHAPES; shape++)
-            assert_true(real.bits[g] <= real.with[shape][g]);
-        assert_true(g == ADCGS_GROUP_FV || g == ADCGS_GROUP_FG ? x.f->density[g] >= 2 : x.f->density[g] <= 1);
-    }
-    adcgs_model_clear(&model, NULL);
     clear(&x);
 }
 
@@ -276,15 +240,15 @@ static void smooth_rate_follows_the_tables(void **state)
     adcgs_train_dsp dsp;
     adcgs_rate_table *table = malloc(sizeof *table);
     adcgs_train_dsp_init(&dsp, (adcgs_cpu_level)(uintptr_t)*state);
-    adcgs_rate_table_init(table, 0);
+    adcgs_rate_table_init(table);
     for (int level = 1; level < ADCGS_SIGMA_LEVELS; level++) {
-        const uint32_t *cdf = adcgs_table_cdf(0, level);
-        const int support = adcgs_table_support(0, level);
+        const uint32_t *cdf = adcgs_table_cdf(level);
+        const int support = adcgs_table_support(level);
         double real = 0, close = 0;
         for (int n = -support; n <= support; n++) {
             const double p = (cdf[n + support + 1] - cdf[n + support]) / 65536.0;
             const adcgs_rate_cell s = smooth(&dsp, (float)n, level), t = table->cell[level][abs(n)];
-            assert_int_equal((int)lrint(65536 * (double)t.bits), adcgs_value_cost(0, level, n));
+            assert_int_equal((int)lrint(65536 * (double)t.bits), adcgs_value_cost(level, n));
             real += p * t.bits;
             close += p * s.bits;
             if (p < 1e-3)
@@ -300,29 +264,27 @@ static void smooth_rate_follows_the_tables(void **state)
     free(table);
 }
 
-/** For each shape: level 0 codes nothing, larger values cost more, and values far out have a gradient towards a higher level. */
+/** Level 0 codes nothing, larger values cost more, and values far out have a gradient towards a higher level. */
 static void tables_lead_back(void **state)
 {
     (void)state;
     adcgs_rate_table *table = malloc(sizeof *table);
-    for (int shape = 0; shape < ADCGS_SHAPES; shape++) {
-        adcgs_rate_table_init(table, shape);
-        for (int level = 0; level < ADCGS_SIGMA_LEVELS; level++)
-            for (int a = 0; a <= ADCGS_LEVEL_MAX; a++) {
-                const adcgs_rate_cell *cell = &table->cell[level][a];
-                const double sigma = 0.11 * pow(64 / 0.11, level / 63.0);
-                if (level)
-                    assert_int_equal((int)lrint(65536 * (double)cell->bits), adcgs_value_cost(shape, level, a));
-                else
-                    assert_true(cell->bits == 0);
-                if (a == 0 ? cell->by_value != 0 : !(cell->by_value > 0))
-                    fail_msg("shape %d, level %d: bits change by %g from magnitude %d", shape, level, (double)cell->by_value, a);
-                if (a > 4 * sigma + 1)
-                    assert_true(cell->by_level < 0);
-                else if (a == 0)
-                    assert_true(cell->by_level >= 0);
-            }
-    }
+    adcgs_rate_table_init(table);
+    for (int level = 0; level < ADCGS_SIGMA_LEVELS; level++)
+        for (int a = 0; a <= ADCGS_LEVEL_MAX; a++) {
+            const adcgs_rate_cell *cell = &table->cell[level][a];
+            const double sigma = 0.11 * pow(64 / 0.11, level / 63.0);
+            if (level)
+                assert_int_equal((int)lrint(65536 * (double)cell->bits), adcgs_value_cost(level, a));
+            else
+                assert_true(cell->bits == 0);
+            if (a == 0 ? cell->by_value != 0 : !(cell->by_value > 0))
+                fail_msg("level %d: bits change by %g from magnitude %d", level, (double)cell->by_value, a);
+            if (a > 4 * sigma + 1)
+                assert_true(cell->by_level < 0);
+            else if (a == 0)
+                assert_true(cell->by_level >= 0);
+        }
     free(table);
 }
 
@@ -337,7 +299,6 @@ int main(void)
             cmocka_unit_test_prestate(steps_reach_all_values, state),
             cmocka_unit_test_prestate(parts_add_up, state),
             cmocka_unit_test_prestate(exact_gradients_follow_the_smooth_ones, state),
-            cmocka_unit_test_prestate(shapes_fit_the_values, state),
             cmocka_unit_test_prestate(smooth_rate_follows_the_tables, state),
             cmocka_unit_test_prestate(tables_lead_back, state),
         };
