@@ -82,8 +82,6 @@ const adcgs_setting adcgs_settings[] = {
     LOSS(network_rate, B | Q, 0, 1000, BUT_PAPER(1, 0), "weight of the networks' bits, relative to those of features"),
     LOSS(rate_period, S | Q, 1, 1000, ALL(4),
          "interval of the groups of 64 anchors whose bits are measured in an iteration; 1: all groups"),
-    LOSS(rdo_strength, B | Q, 0, 1000, ALL(0),
-         "weight of bits in the choice of quantised levels, relative to lambda; 0: nearest levels"),
     COMMON(ssim_weight, ssim_weight, LOSS, Q, 0, 1, ALL(0.2),
            "share of 1 - SSIM in the photometric loss; the rest is error per pixel"),
     ROW("l2_share", l2_share, LOSS, ALWAYS, Q, 0, 1, BUT_PAPER(0.9, 0),

@@ -64,7 +64,6 @@ typedef struct adcgs_train_config {
     float lambda;       /**< loss per mebibyte (2^23 bits) of estimated features and networks */
     float network_rate; /**< weight of the networks' bits, relative to the features' */
     int rate_period;    /**< rate is measured on every n-th group of anchors */
-    float rdo_strength; /**< loss per bit when values are frozen, relative to training's; 0: the nearest levels */
     float ssim_weight, l2_share;
     float rigidity_weight;  /**< of the rigidity energy between neighbours; 0 if several views share a timestamp */
     float scale_reg_weight; /**< of the scale penalty of primitives */

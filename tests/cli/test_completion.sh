@@ -43,8 +43,8 @@ wants "adcgs-dec film.adcgs --md5 n" "notes.txt"
 wants "adcgs-info fo" "folder"
 wants "adcgs-enc scene -p s" "slow"
 wants "adcgs-enc scene --set lamb" "lambda="
-wants "adcgs-enc scene --set lambda=0.1,rdo" "0.1,rdo_strength="
-wants "adcgs-enc scene --set=lambda=0.1,rdo" "0.1,rdo_strength="
+wants "adcgs-enc scene --set lambda=0.1,ssim" "0.1,ssim_weight="
+wants "adcgs-enc scene --set=lambda=0.1,ssim" "0.1,ssim_weight="
 wants "adcgs-enc scene --set lambda=" ""
 case $(offered "adcgs-enc --") in
     *--bf16*--help*--preset*--quiet*--set*--version*) ;;
@@ -93,8 +93,8 @@ notes.txt|adcgs-dec film.adcgs --md5 n
 folder|adcgs-info fo
 slow|adcgs-enc scene -p s
 lambda|adcgs-enc scene --set lamb
-rdo_strength|adcgs-enc scene --set lambda=0.1,rdo
-rdo_strength|adcgs-enc scene --set=lambda=0.1,rdo
+ssim_weight|adcgs-enc scene --set lambda=0.1,ssim
+ssim_weight|adcgs-enc scene --set=lambda=0.1,ssim
 enc|eval|adcgs e
 sweep|adcgs help sw
 slow|adcgs enc scene -p s

@@ -65,7 +65,6 @@ static void configure(adcgs_train_config *c, adcgs_error *error)
     c->params.adaptive_steps = 1;
     c->tiers = 2;
     c->shape.theta_width = c->shape.omega_width = c->shape.varpi_width = c->shape.entropy_width = 4;
-    c->rdo_strength = 1;
 }
 
 static adcgs_trainer *make(adcgs_error *error)

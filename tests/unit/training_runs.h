@@ -13,7 +13,6 @@ static inline adcgs_train_config all_stages_config(void)
 {
     adcgs_train_config c = small_config();
     c.freeze_start = 0.92f; /* long enough to stop in */
-    c.rdo_strength = 1;
     c.params.adaptive_steps = 1;
     c.params.spans = 1;
     return c;

@@ -30,16 +30,12 @@ adcgs_status adcgs_freeze(adcgs_trainer *t, adcgs_error *error)
     const adcgs_quantise_options nearest = {.cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor, .value = value};
     ADCGS_TRY(t->quantise(t->f, &nearest, error));
     adcgs_level_bits(t);
-    if (t->config.rdo_strength > 0 || t->config.target != ADCGS_TARGET_NONE)
+    if (t->config.target != ADCGS_TARGET_NONE)
         ADCGS_TRY(adcgs_curvature_measure(t, curvature, NULL, error));
     else
         for (int i = 0; i < ADCGS_P_ANCHOR; i++)
             memset(curvature[i], 0, t->f->param[i].n * sizeof *curvature[i]);
     hold_settled(t->f, curvature);
     t->stage.frozen = 1;
-    if (t->config.rdo_strength > 0) {
-        ADCGS_TRY(adcgs_level_choose(t, (double)t->config.rdo_strength, error));
-        adcgs_level_bits(t);
-    }
     return ADCGS_OK;
 }

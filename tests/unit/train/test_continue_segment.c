@@ -19,7 +19,6 @@
 static adcgs_train_config follow_config(void)
 {
     adcgs_train_config c = small_config();
-    c.rdo_strength = 1;
     c.params.adaptive_steps = 1;
     c.params.spans = 1;
     return c;

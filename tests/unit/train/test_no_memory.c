@@ -56,7 +56,6 @@ static adcgs_train_config short_config(void)
     c.max_anchors = 140;
     c.densify_interval = 3;
     c.freeze_start = 0.90f;
-    c.rdo_strength = 1;
     c.static_threshold = 1;
     c.rigidity_weight = 0.02f;
     c.shape.theta_width = c.shape.omega_width = c.shape.varpi_width = c.shape.entropy_width = 8;
