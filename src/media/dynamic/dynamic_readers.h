@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file All readers of splats over time, in the order in which they are tried. */
+#ifndef ADCGS_MEDIA_DYNAMIC_DYNAMIC_READERS_H
+#define ADCGS_MEDIA_DYNAMIC_DYNAMIC_READERS_H
+
+#include "media/dynamic/dynamic_reader.h"
+
+extern const adcgs_dynamic_reader adcgs_dynamic_stg;
+
+#define ADCGS_DYNAMIC_READERS &adcgs_dynamic_stg
+
+#endif

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Splats over time: finds the reader of a source. */
+#include "config.h"
+
+#include "media/dynamic/motion.h"
+#include "media/dynamic/dynamic_readers.h"
+#include "system/file.h"
+#include "system/paths.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define FILE_MAX ((uint64_t)8 << 30) /* bytes of a file that is read; chosen by hand, not measured */
+#define ROUNDING 5e-7                /* seconds: a time this close before a frame is that frame's; chosen by hand, not measured */
+
+static const adcgs_dynamic_reader *const readers[] = {ADCGS_DYNAMIC_READERS};
+
+static const adcgs_dynamic_reader *find_reader(const uint8_t *data, size_t bytes)
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(readers); i++)
+        if (readers[i]->is(data, ADCGS_MIN(bytes, ADCGS_DYNAMIC_LOOK)))
+            return readers[i];
+    return NULL;
+}
+
+int adcgs_dynamic_is(const char *path)
+{
+    FILE *file;
+    if (adcgs_is_folder(path) || adcgs_file_open(&file, path, NULL) != ADCGS_OK)
+        return 0;
+    uint8_t *const data = calloc(1, ADCGS_DYNAMIC_LOOK + 1);
+    const size_t n = data ? fread(data, 1, ADCGS_DYNAMIC_LOOK, file) : 0;
+    fclose(file);
+    const int found = n && find_reader(data, n);
+    free(data);
+    return found;
+}
+
+void adcgs_dynamic_set_clock(adcgs_dynamic *m, adcgs_fps rate, uint32_t frames)
+{
+    m->rate = m->options.rate.den ? m->options.rate : rate.den ? rate : (adcgs_fps){ADCGS_DYNAMIC_RATE, 1};
+    m->frames = m->options.frames ? m->options.frames : frames ? frames : ADCGS_DYNAMIC_FRAMES;
+}
+
+static void forget(adcgs_dynamic *m)
+{
+    free((void *)(uintptr_t)m->data);
+    m->data = NULL;
+}
+
+/** Takes data from malloc(), also on failure. */
+static adcgs_status open_data(adcgs_dynamic **out, uint8_t *data, size_t bytes, const char *path,
+                              const adcgs_dynamic_options *options, adcgs_error *error)
+{
+    static const adcgs_dynamic_options defaults;
+    const adcgs_dynamic_reader *const reader = find_reader(data, bytes);
+    adcgs_dynamic *m = reader ? calloc(1, sizeof *m) : NULL;
+    char *const name = strdup(path);
+    *out = NULL;
+    if (!m || !name) {
+        free(m);
+        free(name);
+        free(data);
+        return reader ? adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path)
+                      : adcgs_fail(error, ADCGS_ERR_DATA, "%s: not splats over time", path);
+    }
+    *m = (adcgs_dynamic){.reader = reader, .path = name, .options = options ? *options : defaults, .data = data, .bytes = bytes};
+    const adcgs_status status = reader->open(m, error);
+    if (status != ADCGS_OK)
+        adcgs_dynamic_free(&m);
+    else if (!reader->keeps_data)
+        forget(m);
+    *out = m;
+    return status;
+}
+
+adcgs_status adcgs_dynamic_open(adcgs_dynamic **out, const char *path, const adcgs_dynamic_options *options, adcgs_error *error)
+{
+    uint8_t *data;
+    size_t bytes;
+    *out = NULL;
+    ADCGS_TRY(adcgs_file_load(&data, &bytes, path, FILE_MAX, error));
+    return open_data(out, data, bytes, path, options, error);
+}
+
+adcgs_status adcgs_dynamic_parse(adcgs_dynamic **out, const uint8_t *data, size_t bytes, const char *path,
+                                 const adcgs_dynamic_options *options, adcgs_error *error)
+{
+    uint8_t *const copy = calloc(1, bytes + 1);
+    *out = NULL;
+    if (!copy)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    memcpy(copy, data, bytes);
+    return open_data(out, copy, bytes, path, options, error);
+}
+
+double adcgs_dynamic_duration(const adcgs_dynamic *m)
+{
+    return (m->frames - 1.0) * m->rate.den / m->rate.num;
+}
+
+uint32_t adcgs_dynamic_frame(const adcgs_dynamic *m, double seconds)
+{
+    const double at = floor((seconds + ROUNDING) * m->rate.num / m->rate.den);
+    return at >= m->frames - 1.0 ? m->frames - 1 : at > 0.0 ? (uint32_t)at : 0;
+}
+
+adcgs_status adcgs_dynamic_at(const adcgs_dynamic *m, double seconds, adcgs_splats *out, adcgs_error *error)
+{
+    *out = (adcgs_splats){0};
+    const adcgs_status status = m->reader->at(m, fmin(fmax(seconds, 0.0), adcgs_dynamic_duration(m)), out, error);
+    if (status != ADCGS_OK)
+        adcgs_splats_free(out);
+    return status;
+}
+
+void adcgs_dynamic_free(adcgs_dynamic **dynamic)
+{
+    adcgs_dynamic *const m = *dynamic;
+    if (m) {
+        m->reader->close(m);
+        forget(m);
+        free(m->path);
+        free(m);
+    }
+    *dynamic = NULL;
+}
+
+adcgs_status adcgs_dynamic_motion_at(const adcgs_dynamic *m, double seconds, adcgs_splats *out, adcgs_error *error)
+{
+    return adcgs_motion_at(m->state, seconds, out, m->path, error);
+}
+
+void adcgs_dynamic_motion_close(adcgs_dynamic *m)
+{
+    if (m->state)
+        adcgs_motion_free(m->state);
+    free(m->state);
+    m->state = NULL;
+}

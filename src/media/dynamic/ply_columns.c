@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Columns of a PLY file. */
+#include "config.h"
+
+#include "media/dynamic/ply_columns.h"
+
+#include <ctype.h>
+
+int adcgs_ply_declares(const uint8_t *data, size_t bytes, const char *property)
+{
+    const char *const end = strstr((const char *)data, "end_header"); /* a zero byte follows the data */
+    const size_t n = strlen(property);
+    for (const char *at = (const char *)data; (at = strstr(at, property)) && (!end || at < end); at += n)
+        if ((size_t)(at - (const char *)data) + n <= bytes && at > (const char *)data && at[-1] == ' ' &&
+            (isspace((unsigned char)at[n]) || !at[n]))
+            return 1;
+    return 0;
+}
+
+static void take(void *user, uint64_t vertex, const adcgs_ply_property *property, double value)
+{
+    const adcgs_ply_column *const column = (const adcgs_ply_column *)user + property->role;
+    column->to[vertex * column->stride] = (float)value;
+}
+
+adcgs_status adcgs_ply_columns(adcgs_ply *ply, const adcgs_ply_column *columns, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        adcgs_ply_property *const p = adcgs_ply_find(ply, columns[i].name);
+        if (!p)
+            return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: no property %s", ply->path, columns[i].name);
+        if (p->type != ADCGS_PLY_FLOAT32 && p->type != ADCGS_PLY_FLOAT64)
+            return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: the property %s is of type %s, expected float or double",
+                              ply->path, columns[i].name, adcgs_ply_type_name(p->type));
+        p->role = (int)i;
+    }
+    return adcgs_ply_vertices(ply, take, (void *)(uintptr_t)columns);
+}

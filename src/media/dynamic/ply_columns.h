@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Columns of a PLY file as arrays of binary32. */
+#ifndef ADCGS_MEDIA_DYNAMIC_PLY_COLUMNS_H
+#define ADCGS_MEDIA_DYNAMIC_PLY_COLUMNS_H
+
+#include "media/points/ply.h"
+
+typedef struct adcgs_ply_column {
+    const char *name; /**< of a property of the vertices */
+    float *to;        /**< [vertices], `stride` floats apart */
+    size_t stride;    /**< 1: no gaps */
+} adcgs_ply_column;
+
+/** True if a header in the first bytes of a PLY file declares a property of this name; for is() of readers. */
+int adcgs_ply_declares(const uint8_t *data, size_t bytes, const char *property);
+/**
+ * Read all columns at once. ADCGS_ERR_DATA, naming it, for a missing property, or one that is neither float nor double. Numbers
+ * are not checked.
+ */
+adcgs_status adcgs_ply_columns(adcgs_ply *ply, const adcgs_ply_column *columns, size_t n);
+
+#endif

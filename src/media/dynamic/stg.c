@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Reads the PLY of SpacetimeGaussians (Li et al., 2024): positions are cubic in time, opacities fade without a half in the
+ * exponent, f_dc_0..2 are RGB. Time runs from 0 to 1; frame i is at i / frames. The full model, with f_t_0, has a network for its
+ * colours in another file.
+ */
+#include "config.h"
+
+#include "media/dynamic/motion.h"
+#include "media/dynamic/ply_columns.h"
+#include "media/dynamic/dynamic_readers.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static int is_stg(const uint8_t *data, size_t bytes)
+{
+    return adcgs_ply_is(data, bytes) && adcgs_ply_declares(data, bytes, "trbf_center");
+}
+
+/** Numbers before activation become those of a motion; seconds: of the unit of time. */
+static adcgs_status activate(adcgs_motion *m, double seconds, const char *path, adcgs_error *error)
+{
+    adcgs_splats *const s = &m->base;
+    for (uint32_t i = 0; i < s->n; i++) {
+        for (int a = 0; a < 3; a++)
+            s->scale[a][i] = (float)exp((double)s->scale[a][i]);
+        s->opacity[i] = (float)(1.0 / (1.0 + exp(-(double)s->opacity[i])));
+        m->centre[i] = (float)((double)m->centre[i] * seconds);
+        m->sigma[i] =
+            (float)(exp((double)m->sigma[i]) * seconds * sqrt(0.5)); /* exp(-(dt/s)^2) = exp(-dt^2 / (2 (s/sqrt 2)^2)) */
+        for (int j = 0; j < ADCGS_MOTION_ORDERS; j++)
+            for (int a = 0; a < 3; a++)
+                m->motion[j][a][i] = (float)((double)m->motion[j][a][i] / pow(seconds, j + 1));
+        for (int a = 0; a < 4; a++)
+            m->turn[a][i] = (float)((double)m->turn[a][i] / seconds);
+    }
+    return adcgs_motion_check(m, path, error);
+}
+
+static adcgs_status read_rows(adcgs_motion *m, adcgs_ply *ply)
+{
+    adcgs_splats *const s = &m->base;
+    const adcgs_ply_column columns[] = {
+        {"x", s->mean[0], 1},
+        {"y", s->mean[1], 1},
+        {"z", s->mean[2], 1},
+        {"trbf_center", m->centre, 1},
+        {"trbf_scale", m->sigma, 1},
+        {"motion_0", m->motion[0][0], 1},
+        {"motion_1", m->motion[0][1], 1},
+        {"motion_2", m->motion[0][2], 1},
+        {"motion_3", m->motion[1][0], 1},
+        {"motion_4", m->motion[1][1], 1},
+        {"motion_5", m->motion[1][2], 1},
+        {"motion_6", m->motion[2][0], 1},
+        {"motion_7", m->motion[2][1], 1},
+        {"motion_8", m->motion[2][2], 1},
+        {"f_dc_0", s->colour[0], 1},
+        {"f_dc_1", s->colour[1], 1},
+        {"f_dc_2", s->colour[2], 1},
+        {"opacity", s->opacity, 1},
+        {"scale_0", s->scale[0], 1},
+        {"scale_1", s->scale[1], 1},
+        {"scale_2", s->scale[2], 1},
+        {"rot_0", s->rotation[0], 1},
+        {"rot_1", s->rotation[1], 1},
+        {"rot_2", s->rotation[2], 1},
+        {"rot_3", s->rotation[3], 1},
+        {"omega_0", m->turn[0], 1},
+        {"omega_1", m->turn[1], 1},
+        {"omega_2", m->turn[2], 1},
+        {"omega_3", m->turn[3], 1},
+    };
+    return adcgs_ply_columns(ply, columns, ADCGS_COUNTOF(columns));
+}
+
+static adcgs_status read(adcgs_dynamic *m, adcgs_ply *ply, adcgs_error *error)
+{
+    if (adcgs_ply_find(ply, "f_t_0")) {
+        if (!m->options.partial)
+            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED,
+                              "%s: SpacetimeGaussians' full model (it has f_t_0): its colours need a network that the file does "
+                              "not contain; --partial takes the first three as colours",
+                              m->path);
+        snprintf(m->remark, sizeof m->remark, "SpacetimeGaussians' full model without its network: colours are approximate");
+    }
+    adcgs_motion *const motion = m->state = calloc(1, sizeof *motion);
+    if (!motion)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", m->path);
+    ADCGS_TRY(adcgs_motion_alloc(motion, ply->vertex.count, ADCGS_MOTION_ORDERS, ADCGS_MOTION_TURNS, m->path, error));
+    ADCGS_TRY(read_rows(motion, ply));
+    adcgs_dynamic_set_clock(m, (adcgs_fps){0, 0}, 0);
+    m->n = motion->base.n;
+    m->has_identity = m->is_continuous = 1;
+    return activate(motion, m->frames / adcgs_fps_value(m->rate), m->path, error);
+}
+
+static adcgs_status open_stg(adcgs_dynamic *m, adcgs_error *error)
+{
+    adcgs_ply *ply;
+    ADCGS_TRY(adcgs_ply_open(&ply, m->data, m->bytes, m->path, error));
+    const adcgs_status status = read(m, ply, error);
+    adcgs_ply_close(&ply);
+    return status;
+}
+
+const adcgs_dynamic_reader adcgs_dynamic_stg = {"SpacetimeGaussians PLY",  is_stg, 0, open_stg, adcgs_dynamic_motion_at,
+                                                adcgs_dynamic_motion_close};
