@@ -5,8 +5,8 @@
 
 #include "media/dynamic/dynamic_reader.h"
 
-extern const adcgs_dynamic_reader adcgs_dynamic_stg;
+extern const adcgs_dynamic_reader adcgs_dynamic_stg, adcgs_dynamic_ftgs, adcgs_dynamic_splatv;
 
-#define ADCGS_DYNAMIC_READERS &adcgs_dynamic_stg
+#define ADCGS_DYNAMIC_READERS &adcgs_dynamic_stg, &adcgs_dynamic_ftgs, &adcgs_dynamic_splatv
 
 #endif

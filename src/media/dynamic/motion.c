@@ -42,6 +42,23 @@ void adcgs_motion_free(adcgs_motion *m)
     *m = (adcgs_motion){0};
 }
 
+void adcgs_motion_stretch(adcgs_motion *m, double seconds)
+{
+    for (uint32_t i = 0; i < m->base.n; i++) {
+        m->centre[i] = (float)((double)m->centre[i] * seconds);
+        m->sigma[i] = (float)((double)m->sigma[i] * seconds);
+        for (int j = 0; j < ADCGS_MOTION_ORDERS; j++)
+            for (int a = 0; a < 3 && m->motion[j][a]; a++)
+                m->motion[j][a][i] = (float)((double)m->motion[j][a][i] / pow(seconds, j + 1));
+        for (int a = 0; a < 4 && m->turn[a]; a++)
+            m->turn[a][i] = (float)((double)m->turn[a][i] / seconds);
+        if (m->begin) {
+            m->begin[i] = (float)((double)m->begin[i] * seconds);
+            m->end[i] = (float)((double)m->end[i] * seconds);
+        }
+    }
+}
+
 /* ---- Checks ---- */
 
 static int all_finite(float *const *arrays, int n, uint32_t i)

@@ -25,7 +25,7 @@ typedef struct adcgs_motion {
     float *block;                          /**< memory of the arrays */
 } adcgs_motion;
 
-/** Arrays that a motion has, besides centre and sigma. */
+/** Arrays that a motion has, besides centre and sigma; definition: bits. */
 enum { ADCGS_MOTION_TURNS = 1, ADCGS_MOTION_WINDOWS = 2 };
 
 /**
@@ -34,6 +34,8 @@ enum { ADCGS_MOTION_TURNS = 1, ADCGS_MOTION_WINDOWS = 2 };
  */
 adcgs_status adcgs_motion_alloc(adcgs_motion *motion, uint64_t n, int orders, int flags, const char *path, adcgs_error *error);
 void adcgs_motion_free(adcgs_motion *motion);
+/** Change a motion that is in a unit of time of its own, of so many seconds, to seconds. */
+void adcgs_motion_stretch(adcgs_motion *motion, double seconds);
 /** ADCGS_ERR_DATA, naming the row, for a number that is not finite, a sigma that is not > 0, and a rotation of length 0. */
 adcgs_status adcgs_motion_check(const adcgs_motion *motion, const char *path, adcgs_error *error);
 /** The splats at a time in seconds: row k of the motion is splat k. Positions that leave binary32 become invisible. */

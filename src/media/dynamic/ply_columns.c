@@ -23,7 +23,7 @@ static void take(void *user, uint64_t vertex, const adcgs_ply_property *property
     column->to[vertex * column->stride] = (float)value;
 }
 
-adcgs_status adcgs_ply_columns(adcgs_ply *ply, const adcgs_ply_column *columns, size_t n)
+adcgs_status adcgs_ply_find_columns(adcgs_ply *ply, const adcgs_ply_column *columns, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         adcgs_ply_property *const p = adcgs_ply_find(ply, columns[i].name);
@@ -34,5 +34,11 @@ adcgs_status adcgs_ply_columns(adcgs_ply *ply, const adcgs_ply_column *columns, 
                               ply->path, columns[i].name, adcgs_ply_type_name(p->type));
         p->role = (int)i;
     }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_ply_columns(adcgs_ply *ply, const adcgs_ply_column *columns, size_t n)
+{
+    ADCGS_TRY(adcgs_ply_find_columns(ply, columns, n));
     return adcgs_ply_vertices(ply, take, (void *)(uintptr_t)columns);
 }

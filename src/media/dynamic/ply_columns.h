@@ -13,10 +13,14 @@ typedef struct adcgs_ply_column {
 
 /** True if a header in the first bytes of a PLY file declares a property of this name; for is() of readers. */
 int adcgs_ply_declares(const uint8_t *data, size_t bytes, const char *property);
+/** A use of a table of columns. */
+typedef adcgs_status (*adcgs_ply_columns_fn)(adcgs_ply *ply, const adcgs_ply_column *columns, size_t n);
 /**
- * Read all columns at once. ADCGS_ERR_DATA, naming it, for a missing property, or one that is neither float nor double. Numbers
- * are not checked.
+ * Find all columns, before memory is allocated for them: their `to` may be NULL. ADCGS_ERR_DATA, naming it, for a missing
+ * property, or one that is neither float nor double.
  */
+adcgs_status adcgs_ply_find_columns(adcgs_ply *ply, const adcgs_ply_column *columns, size_t n);
+/** Find all columns and read them at once. Numbers are not checked. */
 adcgs_status adcgs_ply_columns(adcgs_ply *ply, const adcgs_ply_column *columns, size_t n);
 
 #endif

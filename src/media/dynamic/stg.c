@@ -6,6 +6,7 @@
  */
 #include "config.h"
 
+#include "media/dynamic/activate.h"
 #include "media/dynamic/motion.h"
 #include "media/dynamic/ply_columns.h"
 #include "media/dynamic/dynamic_readers.h"
@@ -22,24 +23,14 @@ static int is_stg(const uint8_t *data, size_t bytes)
 /** Numbers before activation become those of a motion; seconds: of the unit of time. */
 static adcgs_status activate(adcgs_motion *m, double seconds, const char *path, adcgs_error *error)
 {
-    adcgs_splats *const s = &m->base;
-    for (uint32_t i = 0; i < s->n; i++) {
-        for (int a = 0; a < 3; a++)
-            s->scale[a][i] = (float)exp((double)s->scale[a][i]);
-        s->opacity[i] = (float)(1.0 / (1.0 + exp(-(double)s->opacity[i])));
-        m->centre[i] = (float)((double)m->centre[i] * seconds);
-        m->sigma[i] =
-            (float)(exp((double)m->sigma[i]) * seconds * sqrt(0.5)); /* exp(-(dt/s)^2) = exp(-dt^2 / (2 (s/sqrt 2)^2)) */
-        for (int j = 0; j < ADCGS_MOTION_ORDERS; j++)
-            for (int a = 0; a < 3; a++)
-                m->motion[j][a][i] = (float)((double)m->motion[j][a][i] / pow(seconds, j + 1));
-        for (int a = 0; a < 4; a++)
-            m->turn[a][i] = (float)((double)m->turn[a][i] / seconds);
-    }
+    adcgs_splats_activate(&m->base);
+    for (uint32_t i = 0; i < m->base.n; i++)
+        m->sigma[i] = (float)(exp((double)m->sigma[i]) * sqrt(0.5)); /* exp(-(dt/s)^2) = exp(-dt^2 / (2 (s/sqrt 2)^2)) */
+    adcgs_motion_stretch(m, seconds);
     return adcgs_motion_check(m, path, error);
 }
 
-static adcgs_status read_rows(adcgs_motion *m, adcgs_ply *ply)
+static adcgs_status with_columns(adcgs_motion *m, adcgs_ply *ply, adcgs_ply_columns_fn use)
 {
     adcgs_splats *const s = &m->base;
     const adcgs_ply_column columns[] = {
@@ -73,7 +64,7 @@ static adcgs_status read_rows(adcgs_motion *m, adcgs_ply *ply)
         {"omega_2", m->turn[2], 1},
         {"omega_3", m->turn[3], 1},
     };
-    return adcgs_ply_columns(ply, columns, ADCGS_COUNTOF(columns));
+    return use(ply, columns, ADCGS_COUNTOF(columns));
 }
 
 static adcgs_status read(adcgs_dynamic *m, adcgs_ply *ply, adcgs_error *error)
@@ -89,8 +80,9 @@ static adcgs_status read(adcgs_dynamic *m, adcgs_ply *ply, adcgs_error *error)
     adcgs_motion *const motion = m->state = calloc(1, sizeof *motion);
     if (!motion)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", m->path);
+    ADCGS_TRY(with_columns(motion, ply, adcgs_ply_find_columns)); /* before memory is allocated for them */
     ADCGS_TRY(adcgs_motion_alloc(motion, ply->vertex.count, ADCGS_MOTION_ORDERS, ADCGS_MOTION_TURNS, m->path, error));
-    ADCGS_TRY(read_rows(motion, ply));
+    ADCGS_TRY(with_columns(motion, ply, adcgs_ply_columns));
     adcgs_dynamic_set_clock(m, (adcgs_fps){0, 0}, 0);
     m->n = motion->base.n;
     m->has_identity = m->is_continuous = 1;
