@@ -111,7 +111,7 @@ static inline void survive(const uint8_t *data, size_t bytes)
     adcgs_dynamic_free(&dynamic);
 }
 
-/** A sample that is cut short at some hundred places, or has single bytes replaced, neither crashes nor gives infinite numbers. */
+/** A sample, cut short at a hundred places or with single bytes replaced, neither crashes nor gives infinite numbers. */
 static inline void survive_damage(const char *name)
 {
     uint8_t *data;
