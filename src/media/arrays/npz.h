@@ -7,7 +7,7 @@
 
 /**
  * The NPY file with the name of an array, from malloc(), with a zero byte after it. Archives must be like numpy's: one part, no
- * encryption, less than 4 GiB; stored, or deflated if this build has zlib (else ADCGS_ERR_UNSUPPORTED).
+ * encryption, less than 4 GiB; stored, or deflated if this build has zlib (media/arrays/zip_read.h).
  */
 adcgs_status adcgs_npz_read(uint8_t **out, size_t *bytes, const char *path, const char *array, adcgs_error *error);
 
