@@ -2,7 +2,7 @@
 /** \file
  * Reading NPY: a magic number, the length of a header, a header with the text
  * of a Python dictionary, the numbers. Only tables with the expected number of
- * columns are accepted; any other file is an error that names the reason.
+ * columns are accepted; for any other file the error states the reason.
  */
 #include "config.h"
 
@@ -26,8 +26,7 @@ typedef struct reader {
     const char *path;
     adcgs_error *error;
     int seen;
-    int item_bytes;   /**< 4 or 8 */
-    uint32_t columns; /**< required number of columns */
+    int item_bytes; /**< 4 or 8 */
     int n_dimensions;
     uint64_t shape[DIMENSIONS_MAX];
 } reader;
@@ -153,8 +152,6 @@ static adcgs_status read_dictionary(reader *r)
         return bad(r, "", "something follows the dictionary");
     if (r->seen != SEEN_ALL)
         return bad(r, r->seen & SEEN_DESCR ? r->seen & SEEN_ORDER ? "shape" : "fortran_order" : "descr", "missing");
-    if (r->n_dimensions != 2 || r->shape[1] != r->columns)
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: header: shape: expected (n, %u)", r->path, r->columns);
     return ADCGS_OK;
 }
 
@@ -177,22 +174,53 @@ static adcgs_status find_header(reader *r, const uint8_t *data, size_t bytes)
     return ADCGS_OK;
 }
 
+/** Read the header; *found: number of bytes behind it. */
+static adcgs_status read_header(reader *r, const uint8_t *data, size_t bytes, uint64_t *found)
+{
+    if (bytes < MAGIC_BYTES || memcmp(data, "\x93NUMPY", MAGIC_BYTES))
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: not an NPY file", r->path);
+    ADCGS_TRY(find_header(r, data, bytes));
+    ADCGS_TRY(read_dictionary(r));
+    *found = bytes - (size_t)((const uint8_t *)r->end - data);
+    return ADCGS_OK;
+}
+
+static adcgs_status set_table(adcgs_npy *out, const reader *r, uint64_t rows, uint32_t columns, uint64_t found, const char *what)
+{
+    const uint64_t expected = rows * columns * (uint64_t)r->item_bytes;
+    if (found != expected)
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %llu bytes behind the header, expected %llu for %llu %s", r->path,
+                          (unsigned long long)found, (unsigned long long)expected, (unsigned long long)rows, what);
+    *out = (adcgs_npy){.rows = rows, .columns = columns, .item_bytes = r->item_bytes, .numbers = (const uint8_t *)r->end};
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_npy_open(adcgs_npy *out, const uint8_t *data, size_t bytes, uint32_t columns, const char *what,
                             const char *path, adcgs_error *error)
 {
-    reader r = {.path = path, .error = error, .columns = columns};
+    reader r = {.path = path, .error = error};
+    uint64_t found;
     *out = (adcgs_npy){0};
-    if (bytes < MAGIC_BYTES || memcmp(data, "\x93NUMPY", MAGIC_BYTES))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not an NPY file", path);
-    ADCGS_TRY(find_header(&r, data, bytes));
-    ADCGS_TRY(read_dictionary(&r));
-    const uint8_t *numbers = (const uint8_t *)r.end;
-    const uint64_t n = r.shape[0], expected = n * columns * (uint64_t)r.item_bytes, found = bytes - (size_t)(numbers - data);
-    if (found != expected)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %llu bytes behind the header, expected %llu for %llu %s", path,
-                          (unsigned long long)found, (unsigned long long)expected, (unsigned long long)n, what);
-    *out = (adcgs_npy){.rows = n, .columns = columns, .item_bytes = r.item_bytes, .numbers = numbers};
-    return ADCGS_OK;
+    ADCGS_TRY(read_header(&r, data, bytes, &found));
+    if (r.n_dimensions != 2 || r.shape[1] != columns)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: header: shape: expected (n, %u)", path, columns);
+    return set_table(out, &r, r.shape[0], columns, found, what);
+}
+
+adcgs_status adcgs_npy_open_frames(adcgs_npy *out, uint64_t *frames, const uint8_t *data, size_t bytes, uint32_t columns,
+                                   const char *path, adcgs_error *error)
+{
+    reader r = {.path = path, .error = error};
+    uint64_t found;
+    *out = (adcgs_npy){0};
+    ADCGS_TRY(read_header(&r, data, bytes, &found));
+    if (r.n_dimensions != 3 || r.shape[2] != columns)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: header: shape: expected (frames, n, %u)", path, columns);
+    *frames = r.shape[0];
+    if (r.shape[1] && *frames >= COUNT_MAX / r.shape[1])
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: header: shape: %llu frames of %llu rows, expected fewer than 2^40 rows",
+                          path, (unsigned long long)*frames, (unsigned long long)r.shape[1]);
+    return set_table(out, &r, *frames * r.shape[1], columns, found, "rows");
 }
 
 double adcgs_npy_value(const adcgs_npy *table, size_t row, uint32_t column)

@@ -19,6 +19,11 @@ typedef struct adcgs_npy {
  */
 adcgs_status adcgs_npy_open(adcgs_npy *out, const uint8_t *data, size_t bytes, uint32_t columns, const char *what,
                             const char *path, adcgs_error *error);
+/**
+ * The same for a table for each frame: shape (frames, n, columns). The table has frames * n rows, which are fewer than 2^40.
+ */
+adcgs_status adcgs_npy_open_frames(adcgs_npy *out, uint64_t *frames, const uint8_t *data, size_t bytes, uint32_t columns,
+                                   const char *path, adcgs_error *error);
 /** A number of the table as stored, so it may not be finite. */
 double adcgs_npy_value(const adcgs_npy *table, size_t row, uint32_t column);
 

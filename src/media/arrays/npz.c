@@ -14,11 +14,12 @@
 #define FILE_MAX ((uint64_t)4 << 30) /* bytes of an archive */
 #define NAME_MAX_BYTES 256           /* bytes of an array's name and its ending */
 
-static adcgs_status extract_array(const uint8_t *archive, size_t archive_bytes, uint8_t **out, size_t *bytes, const char *path,
-                                  const char *array, adcgs_error *error)
+adcgs_status adcgs_npz_parse(uint8_t **out, size_t *bytes, const uint8_t *archive, size_t archive_bytes, const char *path,
+                             const char *array, adcgs_error *error)
 {
     char name[NAME_MAX_BYTES];
     adcgs_zip_archive zip;
+    *out = NULL;
     ADCGS_TRY(adcgs_zip_open(&zip, archive, archive_bytes, path, error));
     snprintf(name, sizeof name, "%s.npy", array);
     if (!adcgs_zip_has(&zip, name))
@@ -32,7 +33,7 @@ adcgs_status adcgs_npz_read(uint8_t **out, size_t *bytes, const char *path, cons
     size_t archive_bytes;
     *out = NULL;
     ADCGS_TRY(adcgs_file_load(&archive, &archive_bytes, path, FILE_MAX, error));
-    const adcgs_status status = extract_array(archive, archive_bytes, out, bytes, path, array, error);
+    const adcgs_status status = adcgs_npz_parse(out, bytes, archive, archive_bytes, path, array, error);
     free(archive);
     return status;
 }

@@ -5,8 +5,17 @@
 
 #include "media/dynamic/dynamic_reader.h"
 
-extern const adcgs_dynamic_reader adcgs_dynamic_stg, adcgs_dynamic_ftgs, adcgs_dynamic_splatv;
+extern const adcgs_dynamic_reader adcgs_dynamic_stg;
+extern const adcgs_dynamic_reader adcgs_dynamic_ftgs;
+extern const adcgs_dynamic_reader adcgs_dynamic_splatv;
+extern const adcgs_dynamic_reader adcgs_dynamic_d3dg;
 
-#define ADCGS_DYNAMIC_READERS &adcgs_dynamic_stg, &adcgs_dynamic_ftgs, &adcgs_dynamic_splatv
+/* clang-format off */
+#define ADCGS_DYNAMIC_READERS \
+    &adcgs_dynamic_stg, \
+    &adcgs_dynamic_ftgs, \
+    &adcgs_dynamic_splatv, \
+    &adcgs_dynamic_d3dg,
+/* clang-format on */
 
 #endif

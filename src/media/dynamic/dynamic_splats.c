@@ -2,6 +2,7 @@
 /** \file Splats over time: finds the reader of a source. */
 #include "config.h"
 
+#include "media/arrays/zip_read.h"
 #include "media/dynamic/motion.h"
 #include "media/dynamic/dynamic_readers.h"
 #include "system/file.h"
@@ -16,11 +17,13 @@
 
 static const adcgs_dynamic_reader *const readers[] = {ADCGS_DYNAMIC_READERS};
 
+/** The first bytes decide; all bytes of an archive, whose directory is at its end, if they do not. */
 static const adcgs_dynamic_reader *find_reader(const uint8_t *data, size_t bytes)
 {
-    for (size_t i = 0; i < ADCGS_COUNTOF(readers); i++)
-        if (readers[i]->is(data, ADCGS_MIN(bytes, ADCGS_DYNAMIC_LOOK)))
-            return readers[i];
+    for (int pass = 0; pass < (bytes > ADCGS_DYNAMIC_LOOK && adcgs_zip_is(data, bytes) ? 2 : 1); pass++)
+        for (size_t i = 0; i < ADCGS_COUNTOF(readers); i++)
+            if (readers[i]->is(data, pass ? bytes : ADCGS_MIN(bytes, ADCGS_DYNAMIC_LOOK)))
+                return readers[i];
     return NULL;
 }
 
@@ -29,10 +32,15 @@ int adcgs_dynamic_is(const char *path)
     FILE *file;
     if (adcgs_is_folder(path) || adcgs_file_open(&file, path, NULL) != ADCGS_OK)
         return 0;
-    uint8_t *const data = calloc(1, ADCGS_DYNAMIC_LOOK + 1);
-    const size_t n = data ? fread(data, 1, ADCGS_DYNAMIC_LOOK, file) : 0;
+    uint8_t *data = calloc(1, ADCGS_DYNAMIC_LOOK + 1);
+    size_t n = data ? fread(data, 1, ADCGS_DYNAMIC_LOOK, file) : 0;
+    int found = n && find_reader(data, n);
+    if (n == ADCGS_DYNAMIC_LOOK && !found && adcgs_zip_is(data, n)) {
+        free(data);
+        rewind(file);
+        found = adcgs_file_load_open(&data, &n, file, path, FILE_MAX, NULL) == ADCGS_OK && find_reader(data, n);
+    }
     fclose(file);
-    const int found = n && find_reader(data, n);
     free(data);
     return found;
 }
