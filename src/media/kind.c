@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const adcgs_kind folder = {ADCGS_KIND_FOLDER, "a folder", NULL, NULL, 0};
+static const adcgs_kind folder = {ADCGS_KIND_FOLDER, "a folder", NULL, NULL, 0, 0};
 
 const adcgs_kind *adcgs_kind_at(const char *path)
 {
@@ -53,7 +53,7 @@ static const char *advise(adcgs_kind_class class, adcgs_want want)
     case ADCGS_KIND_IMAGE:
         return want == ADCGS_WANT_SCENE ? "one image has no camera pose; adcgs-import estimates those of several" : NULL;
     case ADCGS_KIND_SPLATS:
-        return want == ADCGS_WANT_STREAM ? "adcgs-enc makes a stream of it" : NULL;
+        return want == ADCGS_WANT_IMAGE ? NULL : "adcgs-enc makes a stream of it";
     case ADCGS_KIND_POINTS:
         return want == ADCGS_WANT_SCENE ? "give points with a scene, by --points" : NULL;
     case ADCGS_KIND_SCENE:
@@ -74,9 +74,11 @@ adcgs_status adcgs_kind_refuse(const adcgs_kind *kind, const char *path, adcgs_w
                       advice ? advice : "");
 }
 
-/** Splats also serve as scenes, and PLY splats as points. */
+/** Splats also serve as scenes, and PLY splats as points; splats over time only as scenes. */
 static int fits(const adcgs_kind *kind, adcgs_want want)
 {
+    if (kind->is_over_time)
+        return want == ADCGS_WANT_SCENE;
     return kind->class == ADCGS_KIND_UNKNOWN || (kind->is_read && kind->class == wants[want].class) ||
            (want == ADCGS_WANT_STREAM && kind->class == ADCGS_KIND_PAGE) ||   /* media/page_stream looks for the stream in it */
            (want != ADCGS_WANT_STREAM && kind->class == ADCGS_KIND_FOLDER) || /* other readers need a regular file and report

@@ -34,6 +34,7 @@ typedef struct adcgs_kind {
     const char *reader; /**< for images that are read: OpenImageIO's name of the format; else NULL */
     const char *advice; /**< for a kind that is not read; or NULL */
     int is_read;        /**< true: programs that expect its class read it */
+    int is_over_time;   /**< true: splats over time, which are a scene, but no static splats or points */
 } adcgs_kind;
 
 /** The content that a program expects of a file. */

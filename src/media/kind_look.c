@@ -11,7 +11,7 @@
 #include <math.h>
 #include <strings.h>
 
-static const adcgs_kind unknown = {ADCGS_KIND_UNKNOWN, "a file of unknown kind", NULL, NULL, 0};
+static const adcgs_kind unknown = {ADCGS_KIND_UNKNOWN, "a file of unknown kind", NULL, NULL, 0, 0};
 
 /** The bytes and names to examine. */
 typedef struct look {
@@ -50,8 +50,12 @@ static const adcgs_kind *find_in_boxes(const look *l)
 {
     static const adcgs_kind video = VIDEO("a video (MP4 or QuickTime)"), heif = IMAGE("an HEIC image", "heif"),
                             avif = IMAGE("an AVIF image", "heif"), raw = NO_IMAGE("a raw image of a camera (CR3)", TO_JPEG),
-                            fisheyes = {ADCGS_KIND_VIDEO, "a video of two fisheyes (Insta360)", NULL,
-                                        "export a flat video of it with the camera's own program", 0};
+                            fisheyes = {ADCGS_KIND_VIDEO,
+                                        "a video of two fisheyes (Insta360)",
+                                        NULL,
+                                        "export a flat video of it with the camera's own program",
+                                        0,
+                                        0};
     static const char *const boxes[] = {"ftyp", "moov", "mdat", "wide", "skip", "free"};
     static const char *const heifs[] = {"heic", "heix", "heim", "heis", "hevc", "hevx", "mif1", "msf1", "miaf"};
     static const char *const insv[] = {"insv", "insp", NULL};
@@ -125,21 +129,27 @@ static const adcgs_kind *find_bitmap(const look *l)
 /** Archives: the names of their files decide. */
 static const adcgs_kind *find_in_archive(const look *l)
 {
-    static const adcgs_kind sog = NO_SPLATS("splats (SOG)", TO_PLY),
-                            tsog = NO_SPLATS("splats that change with time (TSOG)", NO_SEQUENCE),
+    static const adcgs_kind sog = NO_SPLATS("splats (SOG)", TO_PLY), tsog = OVER_TIME("splats over time (TSOG)"),
+                            d3dg = OVER_TIME("splats over time (params.npz of Dynamic 3D Gaussians)"),
                             npz = OTHER("arrays of NumPy (NPZ)", NULL), zip = OTHER("an archive (ZIP)", "unpack it first");
     if (!begins(l, 0, "PK\3\4") && !begins(l, 0, "PK\5\6"))
         return NULL;
     if (has(l, "means_l.webp") || has(l, "means_u.webp") || has(l, "meta.json"))
-        return !strcasecmp(l->extension, "tsog") || has(l, "velocity") ? &tsog : &sog;
+        return !strcasecmp(l->extension, "tsog") || has(l, "tsog-playback") || has(l, "timeline") ? &tsog : &sog;
+    if (has(l, "means3D.npy") || has(l, "rgb_colors.npy") || has(l, "unnorm_rotations.npy"))
+        return &d3dg;
     return has(l, ".npy") ? &npz : &zip;
 }
 
 static const adcgs_kind *find_ply(const look *l)
 {
-    static const adcgs_kind plain = SPLATS("splats (PLY)"), other = SPLATS("a PLY file");
+    static const adcgs_kind plain = SPLATS("splats (PLY)"), other = SPLATS("a PLY file"),
+                            stg = OVER_TIME("splats over time (SpacetimeGaussians PLY)"),
+                            ftgs = OVER_TIME("splats over time (FTGS PLY)");
     if (!begins(l, 0, "ply\n") && !begins(l, 0, "ply\r"))
         return NULL;
+    if (has(l, " trbf_center") || has(l, " log_duration") || has(l, " ftgs_version"))
+        return has(l, " trbf_center") ? &stg : &ftgs;
     return has(l, " f_dc_0") || has(l, " packed_position") ? &plain : &other; /* the reader parses the header */
 }
 
@@ -206,7 +216,7 @@ static const adcgs_kind *find_json(const look *l)
         {{"\"asset\"", "\"version\"", "\"accessors\""}, NO_SPLATS("a glTF text", "pack it as one binary file (GLB)")},
         {{"\"means\"", "\"quats\"", "\"scales\""}, NO_SPLATS("the meta.json of splats (SOG)", TO_PLY)},
     };
-    static const adcgs_kind scene = {ADCGS_KIND_SCENE, "the cameras of a scene (JSON)", NULL, NULL, 1};
+    static const adcgs_kind scene = {ADCGS_KIND_SCENE, "the cameras of a scene (JSON)", NULL, NULL, 1, 0};
     const size_t at = skip_blanks(l);
     if (at >= l->n || (l->begin[at] != '{' && l->begin[at] != '['))
         return NULL;
@@ -226,9 +236,13 @@ static const adcgs_kind *find_json(const look *l)
 
 static const adcgs_kind *find_markup(const look *l)
 {
-    static const adcgs_kind page = {ADCGS_KIND_PAGE, "a page of adcgs-share", NULL,
-                                    "adcgs-dec renders its stream, adcgs-info describes it", 0},
-                            html = {ADCGS_KIND_PAGE, "a page (HTML)", NULL, "save the file that it links to", 0},
+    static const adcgs_kind page = {ADCGS_KIND_PAGE,
+                                    "a page of adcgs-share",
+                                    NULL,
+                                    "adcgs-dec renders its stream, adcgs-info describes it",
+                                    0,
+                                    0},
+                            html = {ADCGS_KIND_PAGE, "a page (HTML)", NULL, "save the file that it links to", 0, 0},
                             agisoft = NO_SCENE("Agisoft Metashape's cameras (XML)", TO_COLMAP),
                             blocks = NO_SCENE("cameras as BlocksExchange (XML)", TO_COLMAP), xml = OTHER("an XML text", NULL);
     static const char head[] = "<!doctype html", root[] = "<html";

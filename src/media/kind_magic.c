@@ -13,7 +13,7 @@ typedef struct magic {
 static const magic magics[] = {
     {AT(0, "\x8b"
            "ADC\r\n\x1a\n"),
-     {ADCGS_KIND_STREAM, "an adcgs stream", NULL, NULL, 1}},
+     {ADCGS_KIND_STREAM, "an adcgs stream", NULL, NULL, 1, 0}},
     /* Images. */
     {AT(0, "\x89PNG\r\n\x1a\n"), IMAGE("a PNG image", "png")},
     {AT(0, "\xff\xd8\xff"), IMAGE("a JPEG image", "jpeg")},
@@ -56,11 +56,11 @@ static const magic magics[] = {
     /* Splats and points. */
     {AT(0, "NGSP"), SPLATS("splats (SPZ)")},
     {AT(0, "glTF"), SPLATS("a glTF binary file (GLB)")},
-    {AT(0, "Kg\0\0"), NO_SPLATS("splats that change with time (.splatv)", NO_SEQUENCE)},
+    {AT(0, "Kg\0\0"), OVER_TIME("splats over time (.splatv)")},
     {AT(0, "\x89"
            "4DGS"),
-     NO_SPLATS("splats that change with time (.4dgs)", NO_SEQUENCE)},
-    {AT(0, "SP4D"), NO_SPLATS("splats that change with time (.splat4d)", NO_SEQUENCE)},
+     OVER_TIME("splats over time (.4dgs)")},
+    {AT(0, "SP4D"), OVER_TIME("splats over time (.splat4d)")},
     {AT(0, "DRACO"), POINTS("a Draco file")},
     {AT(0, "\x93NUMPY"), POINTS("an array of NumPy (NPY)")},
     {AT(0, "LASF"), NO_POINTS("a point cloud (LAS or LAZ)", "convert it to PLY first")},

@@ -8,20 +8,20 @@
 #define TO_PLY "convert it to PLY or SPZ first, as PlayCanvas' splat-transform does"
 #define TO_PNG "convert it to PNG, JPEG, TIFF or EXR first"
 #define TO_JPEG "develop it to JPEG, TIFF or PNG first"
-#define NO_SEQUENCE "files of splats that change with time are not read"
 #define COLMAP_FOLDER "give the folder that has the model and its images"
 #define TO_COLMAP "export the cameras as a COLMAP model, or as transforms.json"
 
 /* clang-format off */
-#define IMAGE(name, reader) {ADCGS_KIND_IMAGE, name, reader, NULL, 1}
-#define NO_IMAGE(name, advice) {ADCGS_KIND_IMAGE, name, NULL, advice, 0}
-#define VIDEO(name) {ADCGS_KIND_VIDEO, name, NULL, NULL, 1}
-#define SPLATS(name) {ADCGS_KIND_SPLATS, name, NULL, NULL, 1}
-#define NO_SPLATS(name, advice) {ADCGS_KIND_SPLATS, name, NULL, advice, 0}
-#define POINTS(name) {ADCGS_KIND_POINTS, name, NULL, NULL, 1}
-#define NO_POINTS(name, advice) {ADCGS_KIND_POINTS, name, NULL, advice, 0}
-#define NO_SCENE(name, advice) {ADCGS_KIND_SCENE, name, NULL, advice, 0}
-#define OTHER(name, advice) {ADCGS_KIND_OTHER, name, NULL, advice, 0}
+#define IMAGE(name, reader) {ADCGS_KIND_IMAGE, name, reader, NULL, 1, 0}
+#define NO_IMAGE(name, advice) {ADCGS_KIND_IMAGE, name, NULL, advice, 0, 0}
+#define VIDEO(name) {ADCGS_KIND_VIDEO, name, NULL, NULL, 1, 0}
+#define SPLATS(name) {ADCGS_KIND_SPLATS, name, NULL, NULL, 1, 0}
+#define NO_SPLATS(name, advice) {ADCGS_KIND_SPLATS, name, NULL, advice, 0, 0}
+#define OVER_TIME(name) {ADCGS_KIND_SPLATS, name, NULL, NULL, 1, 1}
+#define POINTS(name) {ADCGS_KIND_POINTS, name, NULL, NULL, 1, 0}
+#define NO_POINTS(name, advice) {ADCGS_KIND_POINTS, name, NULL, advice, 0, 0}
+#define NO_SCENE(name, advice) {ADCGS_KIND_SCENE, name, NULL, advice, 0, 0}
+#define OTHER(name, advice) {ADCGS_KIND_OTHER, name, NULL, advice, 0, 0}
 /* clang-format on */
 
 /** The kind of a file by fixed bytes at a fixed place among its first n; NULL: they identify none. */

@@ -176,9 +176,9 @@ static adcgs_status check_kind(adcgs_ply *ply)
         const char *property, *kind;
     } others[] = {{"packed_position",
                    "a compressed PLY (it has packed_position), expected uncompressed splats: decompress it first"},
-                  {"trbf_center", "splats that change with time (Spacetime Gaussians: it has trbf_center), expected static ones"},
-                  {"log_duration", "splats that change with time (FreeTimeGS: it has log_duration), expected static ones"},
-                  {"scale_t", "splats that change with time (4D Gaussians: it has scale_t), expected static ones"}};
+                  {"trbf_center", "splats over time (SpacetimeGaussians: it has trbf_center), expected static ones"},
+                  {"log_duration", "splats over time (FreeTimeGS: it has log_duration), expected static ones"},
+                  {"scale_t", "splats over time (4D Gaussians: it has scale_t), expected static ones"}};
     for (size_t i = 0; i < ADCGS_COUNTOF(others); i++)
         if (adcgs_ply_find(ply, others[i].property))
             return adcgs_fail(ply->error, ADCGS_ERR_UNSUPPORTED, "%s: %s", ply->path, others[i].kind);

@@ -107,7 +107,20 @@ static void test_names_of_splats(void **state)
         {"a", BYTES("glTF\2\0\0\0"), "a glTF binary file (GLB)", ADCGS_KIND_SPLATS},
         {"a", BYTES("ply\nformat ascii 1.0\nelement vertex 1\nproperty float f_dc_0\n"), "splats (PLY)", ADCGS_KIND_SPLATS},
         {"a", BYTES("ply\r\nformat ascii 1.0\r\n"), "a PLY file", ADCGS_KIND_SPLATS},
-        {"a", BYTES("Kg\0\0\xe9\0\0\0[{"), "splats that change with time (.splatv)", ADCGS_KIND_SPLATS},
+        {"a", BYTES("Kg\0\0\xe9\0\0\0[{"), "splats over time (.splatv)", ADCGS_KIND_SPLATS},
+        {"a",
+         BYTES("\x89"
+               "4DGS0\r\n"),
+         "splats over time (.4dgs)", ADCGS_KIND_SPLATS},
+        {"a", BYTES("SP4D\1\0\0\0"), "splats over time (.splat4d)", ADCGS_KIND_SPLATS},
+        {"a", BYTES("ply\nformat ascii 1.0\nelement vertex 1\nproperty float f_dc_0\nproperty float trbf_center\n"),
+         "splats over time (SpacetimeGaussians PLY)", ADCGS_KIND_SPLATS},
+        {"a", BYTES("ply\nformat ascii 1.0\ncomment ftgs_version 1\n"), "splats over time (FTGS PLY)", ADCGS_KIND_SPLATS},
+        {"a.tsog", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x0c\0\0\0means_l.webp"), "splats over time (TSOG)",
+         ADCGS_KIND_SPLATS},
+        {"a", BYTES("PK\3\4 meta.json{\"version\":4,\"profile\":{\"id\":\"org.opsiclear.tsog-playback\""),
+         "splats over time (TSOG)", ADCGS_KIND_SPLATS},
+        {"a", BYTES("PK\3\4 means3D.npy"), "splats over time (params.npz of Dynamic 3D Gaussians)", ADCGS_KIND_SPLATS},
         {"a.zip", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x05\0\0\0b.png"), "an archive (ZIP)",
          ADCGS_KIND_OTHER},
         {"a.sog", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x0c\0\0\0means_l.webp"), "splats (SOG)",
@@ -310,6 +323,11 @@ static void test_wants(void **state)
     assert_int_equal(adcgs_kind_check(in("p.html"), ADCGS_WANT_STREAM, &error), ADCGS_OK); /* it may have one */
     expect_error(adcgs_kind_check(in("p.html"), ADCGS_WANT_SCENE, &error), ADCGS_ERR_DATA, "p.html",
                  "a page of adcgs-share, expected a scene: adcgs-dec renders its stream");
+    put_bytes("s.splatv", BYTES("Kg\0\0\xe9\0\0\0[{"));
+    assert_int_equal(adcgs_kind_check(in("s.splatv"), ADCGS_WANT_SCENE, &error), ADCGS_OK);
+    expect_error(adcgs_kind_check(in("s.splatv"), ADCGS_WANT_SPLATS, &error), ADCGS_ERR_UNSUPPORTED, "s.splatv",
+                 "splats over time (.splatv), expected splats (PLY, SPZ or GLB): adcgs-enc makes a stream of it");
+    expect_error(adcgs_kind_check(in("s.splatv"), ADCGS_WANT_POINTS, &error), ADCGS_ERR_DATA, "s.splatv", "expected points");
     expect_error(adcgs_kind_check(folder, ADCGS_WANT_STREAM, &error), ADCGS_ERR_DATA, folder,
                  "a folder, expected an adcgs stream");
     expect_error(adcgs_scene_open(&scene, in("s.adcgs"), NULL, &error), ADCGS_ERR_DATA, "s.adcgs",

@@ -150,7 +150,7 @@ static void test_other_kinds(void **state)
                  "property float %s\nend_header\n1 2 3 0 0 0 0 0 0 0 1 0 0 0 0.5\n",
                  others[i]);
         put_text("t.ply", text);
-        expect_error(adcgs_splats_read(&s, in("t.ply"), &error), ADCGS_ERR_UNSUPPORTED, "t.ply", "change with time");
+        expect_error(adcgs_splats_read(&s, in("t.ply"), &error), ADCGS_ERR_UNSUPPORTED, "t.ply", "splats over time");
     }
     put_text("t.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                       "property uchar red\nend_header\n1 2 3 4\n");
