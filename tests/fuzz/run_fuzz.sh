@@ -10,7 +10,7 @@ seconds=$2
 shift 2
 sanitize=${SANITIZE:-address,undefined}
 build=fuzz-build${SANITIZE:+-$SANITIZE}
-targets=(range geom net headers decode calls roundtrip ply splats transforms hypernerf layouts manifest texts pictures
+targets=(range geom net headers decode calls roundtrip ply splats dynamic transforms hypernerf layouts manifest texts pictures
     checkpoint live past plan)
 options=()
 if [ "$sanitize" = memory ]; then
@@ -33,7 +33,7 @@ make -s -j "${JOBS:-2}" "${programs[@]}" LDFLAGS="-fsanitize=fuzzer,$sanitize" >
 seeds()
 {
     case $1 in
-        calls | ply | splats | transforms | hypernerf | layouts | texts | pictures | checkpoint | live | plan)
+        calls | ply | splats | dynamic | transforms | hypernerf | layouts | texts | pictures | checkpoint | live | plan)
             echo "$top/tests/fuzz/seeds/$1" ;;
         manifest) echo "$top/conformance/manifest.json" ;;
         *) echo "$top/conformance/vectors" ;;

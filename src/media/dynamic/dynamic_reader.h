@@ -10,8 +10,8 @@
 typedef struct adcgs_dynamic_reader {
     const char *name; /**< for messages: "SpacetimeGaussians PLY" */
     /**
-     * True if a file that begins with these bytes has the format. A zero byte follows the file. A ZIP archive has its directory at
-     * its end: there is a second call with all bytes if no reader knows the first ones.
+     * True if a file that begins with these bytes has the format. A zero byte follows the file. If no reader knows a ZIP archive
+     * by its first bytes, there is a second call with all of them, since its directory is at its end.
      */
     int (*is)(const uint8_t *data, size_t bytes);
     int keeps_data; /**< nonzero: at() reads dynamic->data, which else is freed after open() */
