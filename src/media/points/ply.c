@@ -5,29 +5,17 @@
  */
 #include "config.h"
 
-#include "media/points/ply.h"
+#include "media/points/ply_numbers.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #define LINE_MAX_BYTES 1024 /* of a declaration; comments may be longer; chosen by hand, not measured */
 
-static const struct {
-    const char *name, *alias;
-    int bytes;
-} scalars[ADCGS_PLY_TYPES] = {{"char", "int8", 1}, {"uchar", "uint8", 1}, {"short", "int16", 2},   {"ushort", "uint16", 2},
-                              {"int", "int32", 4}, {"uint", "uint32", 4}, {"float", "float32", 4}, {"double", "float64", 8}};
-
 int adcgs_ply_is(const uint8_t *data, size_t bytes)
 {
     return bytes >= 4 && !memcmp(data, "ply", 3) && (data[3] == '\n' || data[3] == '\r');
-}
-
-const char *adcgs_ply_type_name(adcgs_ply_type type)
-{
-    return scalars[type].name;
 }
 
 static adcgs_status bad_header(adcgs_ply *r, const char *what)
@@ -116,14 +104,6 @@ int adcgs_ply_comment(const adcgs_ply *ply, const char **at, size_t *n)
 
 /* ---- Declarations ---- */
 
-static int find_scalar(const char *name)
-{
-    for (int i = 0; i < ADCGS_PLY_TYPES; i++)
-        if (!strcmp(name, scalars[i].name) || !strcmp(name, scalars[i].alias))
-            return i;
-    return -1;
-}
-
 static adcgs_status parse_property(adcgs_ply *r, const char *line, adcgs_ply_element *e)
 {
     char type[16], count[16], item[16], name[sizeof e->properties[0].name] = "";
@@ -134,12 +114,12 @@ static adcgs_status parse_property(adcgs_ply *r, const char *line, adcgs_ply_ele
     int kind, count_kind = ADCGS_PLY_INT8;
     if (sscanf(line, "property list %15s %15s %63s", count, item, name) == 3) {
         p->is_list = 1;
-        kind = find_scalar(item);
-        count_kind = find_scalar(count);
+        kind = adcgs_ply_type_of(item);
+        count_kind = adcgs_ply_type_of(count);
         if (count_kind > ADCGS_PLY_UINT32)
             return bad_header(r, "the count of a list must be an integer");
     } else if (sscanf(line, "property %15s %63s", type, name) == 2) {
-        kind = find_scalar(type);
+        kind = adcgs_ply_type_of(type);
     } else
         return bad_header(r, "malformed property");
     memcpy(p->name, name, sizeof name);
@@ -166,135 +146,33 @@ static adcgs_status parse_format(adcgs_ply *r, const char *line)
     return ADCGS_OK;
 }
 
-/* ---- Numbers ---- */
+/* ---- The header ---- */
 
-/** The number at r->at as an unsigned integer in host order. */
-static uint64_t load_bytes(const adcgs_ply *r, int bytes)
+/** The element that a line declares; NULL if there are too many. `other` holds those that are not kept. */
+static adcgs_ply_element *begin_element(adcgs_ply *r, const char *name, uint64_t count, adcgs_ply_element *other)
 {
-    uint64_t value = 0;
-    for (int i = 0; i < bytes; i++)
-        value |= (uint64_t)r->at[r->form == ADCGS_PLY_BIG ? bytes - 1 - i : i] << 8 * i;
-    return value;
-}
-
-static double convert(adcgs_ply_type type, uint64_t bits)
-{
-    switch (type) {
-    case ADCGS_PLY_INT8:
-        return (int8_t)(uint8_t)bits;
-    case ADCGS_PLY_INT16:
-        return (int16_t)(uint16_t)bits;
-    case ADCGS_PLY_INT32:
-        return (int32_t)(uint32_t)bits;
-    case ADCGS_PLY_FLOAT32:
-        return (double)adcgs_bits_float((uint32_t)bits);
-    case ADCGS_PLY_FLOAT64:
-        return adcgs_bits_double(bits);
-    default:
-        return (double)bits;
-    }
-}
-
-/** Read one number of text, separated by white space. The data ends with a zero byte, where strtod() stops. */
-static int read_text(adcgs_ply *r, double *out)
-{
-    while (r->at < r->end && isspace(*r->at)) {
-        r->line += *r->at == '\n';
-        r->at++;
-    }
-    char *stop;
-    const char *start = (const char *)r->at;
-    *out = strtod(start, &stop);
-    if (stop == start || r->at == r->end)
-        return -1;
-    r->at = (const uint8_t *)stop;
-    return r->at < r->end && !isspace(*r->at) ? -1 : 0;
-}
-
-static int read_number(adcgs_ply *r, adcgs_ply_type type, double *out)
-{
-    if (r->form == ADCGS_PLY_ASCII)
-        return read_text(r, out);
-    const int bytes = scalars[type].bytes;
-    if (r->end - r->at < bytes)
-        return -1;
-    *out = convert(type, load_bytes(r, bytes));
-    r->at += bytes;
-    return 0;
-}
-
-static int skip_list(adcgs_ply *r, const adcgs_ply_property *p)
-{
-    double count, value;
-    if (read_number(r, p->count_type, &count) || !(count >= 0.0 && count <= 1e9))
-        return -1;
-    const uint64_t n = (uint64_t)count;
-    if (r->form != ADCGS_PLY_ASCII) {
-        const uint64_t bytes = n * (uint64_t)scalars[p->type].bytes;
-        if ((uint64_t)(r->end - r->at) < bytes)
-            return -1;
-        r->at += bytes;
-        return 0;
-    }
-    for (uint64_t i = 0; i < n; i++)
-        if (read_text(r, &value))
-            return -1;
-    return 0;
-}
-
-/** Read the items of an element: pass their numbers to take(), or skip them if it is NULL. */
-static adcgs_status read_element(adcgs_ply *r, const adcgs_ply_element *e, adcgs_ply_take_fn take, void *user)
-{
-    for (uint64_t i = 0; i < e->count; i++)
-        for (int j = 0; j < e->n; j++) {
-            const adcgs_ply_property *p = &e->properties[j];
-            double value = 0.0;
-            if (p->is_list ? skip_list(r, p) : read_number(r, p->type, &value)) {
-                if (r->form == ADCGS_PLY_ASCII && r->at < r->end)
-                    return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: line %d: expected a number", r->path, r->line);
-                return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: ends in item %llu of %llu", r->path, (unsigned long long)i,
-                                  (unsigned long long)e->count);
-            }
-            if (take && p->role >= 0)
-                take(user, i, p, value);
-        }
-    return ADCGS_OK;
-}
-
-/** Check a count against the bytes left: each item takes at least one byte per property (text: and a separator). */
-static adcgs_status check_count(adcgs_ply *r, const adcgs_ply_element *e)
-{
-    uint64_t least = 0;
-    for (int j = 0; j < e->n; j++)
-        least += r->form == ADCGS_PLY_ASCII
-                     ? 2
-                     : (uint64_t)scalars[e->properties[j].is_list ? e->properties[j].count_type : e->properties[j].type].bytes;
-    if (e->count && (!least || e->count > ((uint64_t)(r->end - r->at) + 1) / least))
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %llu items declared, but only %llu bytes follow", r->path,
-                          (unsigned long long)e->count, (unsigned long long)(r->end - r->at));
-    return ADCGS_OK;
-}
-
-/** The element that a line declares; NULL if there are too many. `after` holds an element that follows the vertices. */
-static adcgs_ply_element *begin_element(adcgs_ply *r, const char *name, uint64_t count, int *has_vertex, adcgs_ply_element *after)
-{
-    adcgs_ply_element *e = after;
-    if (!*has_vertex) {
-        *has_vertex = !strcmp(name, "vertex");
-        if (!*has_vertex && r->n_before == ADCGS_PLY_BEFORE)
+    adcgs_ply_element *e = other;
+    if (!r->has_vertex) {
+        r->has_vertex = !strcmp(name, "vertex");
+        if (!r->has_vertex && r->n_before == ADCGS_PLY_BEFORE)
             return NULL;
-        e = *has_vertex ? &r->vertex : &r->before[r->n_before++];
+        e = r->has_vertex ? &r->vertex : &r->before[r->n_before++];
+    } else if (!r->has_after) {
+        r->has_after = 1;
+        e = &r->after;
     }
+    snprintf(e->name, sizeof e->name, "%s", name);
     e->count = count;
     e->n = 0;
+    e->at = NULL;
     return e;
 }
 
 static adcgs_status parse_header(adcgs_ply *r)
 {
     char line[LINE_MAX_BYTES], name[64];
-    adcgs_ply_element *current = NULL, after;
-    int has_format = 0, has_vertex = 0;
+    adcgs_ply_element *current = NULL, other;
+    int has_format = 0;
     ADCGS_TRY(next_line(r, line)); /* "ply" */
     for (;;) {
         ADCGS_TRY(next_line(r, line));
@@ -307,7 +185,7 @@ static adcgs_status parse_header(adcgs_ply *r)
             ADCGS_TRY(parse_format(r, line));
             has_format = 1;
         } else if (sscanf(line, "element %63s %20llu", name, &count) == 2) {
-            current = begin_element(r, name, count, &has_vertex, &after);
+            current = begin_element(r, name, count, &other);
             if (!current)
                 return bad_header(r, "too many elements before the vertices");
         } else if (!strncmp(line, "property ", 9) && current)
@@ -315,7 +193,7 @@ static adcgs_status parse_header(adcgs_ply *r)
         else
             return bad_header(r, "malformed PLY header");
     }
-    return has_format && has_vertex ? ADCGS_OK : bad_header(r, "PLY header without format or vertices");
+    return has_format && r->has_vertex ? ADCGS_OK : bad_header(r, "PLY header without format or vertices");
 }
 
 /** Read the header and the elements before the vertices. */
@@ -323,10 +201,12 @@ static adcgs_status open_vertices(adcgs_ply *r)
 {
     ADCGS_TRY(parse_header(r));
     for (int i = 0; i < r->n_before; i++) {
-        ADCGS_TRY(check_count(r, &r->before[i]));
-        ADCGS_TRY(read_element(r, &r->before[i], NULL, NULL));
+        ADCGS_TRY(adcgs_ply_check_count(r, &r->before[i]));
+        r->before[i].at = r->at;
+        r->before[i].line = r->line;
+        ADCGS_TRY(adcgs_ply_read(r, &r->before[i], NULL, NULL));
     }
-    return check_count(r, &r->vertex);
+    return adcgs_ply_check_count(r, &r->vertex);
 }
 
 adcgs_status adcgs_ply_open(adcgs_ply **out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
@@ -341,7 +221,7 @@ adcgs_status adcgs_ply_open(adcgs_ply **out, const uint8_t *data, size_t bytes, 
     ply->path = path;
     ply->error = error;
     ply->form = ADCGS_PLY_ASCII;
-    ply->line = ply->n_before = 0;
+    ply->line = ply->n_before = ply->has_vertex = ply->has_after = 0;
     const adcgs_status status = open_vertices(ply);
     if (status != ADCGS_OK)
         adcgs_ply_close(&ply);
@@ -355,27 +235,25 @@ void adcgs_ply_close(adcgs_ply **ply)
     *ply = NULL;
 }
 
-adcgs_ply_property *adcgs_ply_find(adcgs_ply *ply, const char *name)
+adcgs_ply_property *adcgs_ply_find_in(adcgs_ply_element *element, const char *name)
 {
-    for (int j = 0; j < ply->vertex.n; j++)
-        if (!ply->vertex.properties[j].is_list && !strcmp(ply->vertex.properties[j].name, name))
-            return &ply->vertex.properties[j];
+    for (int j = 0; j < element->n; j++)
+        if (!element->properties[j].is_list && !strcmp(element->properties[j].name, name))
+            return &element->properties[j];
     return NULL;
 }
 
-adcgs_status adcgs_ply_vertices(adcgs_ply *ply, adcgs_ply_take_fn take, void *user)
+adcgs_ply_property *adcgs_ply_find(adcgs_ply *ply, const char *name)
 {
-    return read_element(ply, &ply->vertex, take, user);
+    return adcgs_ply_find_in(&ply->vertex, name);
 }
 
-adcgs_status adcgs_ply_survey(adcgs_ply *ply, adcgs_ply_take_fn take, void *user)
+adcgs_ply_element *adcgs_ply_find_element(adcgs_ply *ply, const char *name)
 {
-    const uint8_t *const at = ply->at;
-    const int line = ply->line;
-    const adcgs_status status = read_element(ply, &ply->vertex, take, user);
-    ply->at = at;
-    ply->line = line;
-    return status;
+    for (int i = 0; i < ply->n_before; i++)
+        if (!strcmp(ply->before[i].name, name))
+            return &ply->before[i];
+    return ply->has_after && !strcmp(ply->after.name, name) ? &ply->after : NULL;
 }
 
 void adcgs_ply_offset(const adcgs_ply *ply, double offset[3])

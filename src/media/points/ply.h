@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * PLY in memory, for the readers of points and of splats: the header, and the
- * numbers of the element "vertex". Other elements and lists are skipped. Every
- * count is checked against the bytes present before anything is allocated.
+ * numbers of the element "vertex". Lists are skipped, and so are other elements
+ * that the reader does not ask for. Every count is checked against the bytes
+ * present before anything is allocated.
  */
 #ifndef ADCGS_MEDIA_POINTS_PLY_H
 #define ADCGS_MEDIA_POINTS_PLY_H
@@ -34,8 +35,10 @@ typedef struct adcgs_ply_property {
 } adcgs_ply_property;
 
 typedef struct adcgs_ply_element {
+    char name[64];
     uint64_t count;
-    int n;
+    const uint8_t *at; /**< its first item; NULL for the vertices and elements after them */
+    int line, n;
     adcgs_ply_property properties[ADCGS_PLY_PROPERTIES];
 } adcgs_ply_element;
 
@@ -48,8 +51,8 @@ typedef struct adcgs_ply {
     adcgs_ply_form form;
     int line;
     uint8_t line_end; /**< line terminator in the header: LF, with or without CR before it, or CR alone */
-    int n_before;
-    adcgs_ply_element vertex, before[ADCGS_PLY_BEFORE];
+    int n_before, has_vertex, has_after;
+    adcgs_ply_element vertex, after, before[ADCGS_PLY_BEFORE]; /**< after: the next one after the vertices; others are ignored */
 } adcgs_ply;
 
 /** True if the bytes begin like a PLY file. */
@@ -80,6 +83,15 @@ typedef void (*adcgs_ply_take_fn)(void *user, uint64_t vertex, const adcgs_ply_p
 adcgs_status adcgs_ply_vertices(adcgs_ply *ply, adcgs_ply_take_fn take, void *user);
 /** Like adcgs_ply_vertices(), but keeps the position in the file, so that the vertices can be read again. */
 adcgs_status adcgs_ply_survey(adcgs_ply *ply, adcgs_ply_take_fn take, void *user);
+/** An element by name: one before the vertices, or the one that follows them; else NULL. */
+adcgs_ply_element *adcgs_ply_find_element(adcgs_ply *ply, const char *name);
+/** An element's property by name; NULL if there is none, or it is a list. */
+adcgs_ply_property *adcgs_ply_find_in(adcgs_ply_element *element, const char *name);
+/**
+ * Like adcgs_ply_vertices() for an element from adcgs_ply_find_element(). The one after the vertices is read once, after
+ * adcgs_ply_vertices().
+ */
+adcgs_status adcgs_ply_items(adcgs_ply *ply, const adcgs_ply_element *element, adcgs_ply_take_fn take, void *user);
 /** Sets the offset of all positions, from a comment "offset X Y Z"; zero without one. */
 void adcgs_ply_offset(const adcgs_ply *ply, double offset[3]);
 
