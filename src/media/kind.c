@@ -4,6 +4,8 @@
 
 #include "media/kind.h"
 
+#include "media/splats/splats.h"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -37,8 +39,8 @@ static const struct {
 } wants[ADCGS_WANTS] = {
     {"an adcgs stream", ADCGS_KIND_STREAM},
     {"a scene", ADCGS_KIND_SCENE},
-    {"splats (PLY, SPZ or GLB)", ADCGS_KIND_SPLATS},
-    {"points (PLY, Draco or NPY)", ADCGS_KIND_POINTS},
+    {"splats (" ADCGS_SPLATS_FORMATS ")", ADCGS_KIND_SPLATS},
+    {"points (PLY, Draco, NPY or splats)", ADCGS_KIND_POINTS},
     {"an image (PNG, JPEG, TIFF, EXR, WebP, HEIC, AVIF, BMP, GIF, HDR or netpbm)", ADCGS_KIND_IMAGE},
 };
 
@@ -74,7 +76,7 @@ adcgs_status adcgs_kind_refuse(const adcgs_kind *kind, const char *path, adcgs_w
                       advice ? advice : "");
 }
 
-/** Splats also serve as scenes, and PLY splats as points; splats over time only as scenes. */
+/** Splats also serve as scenes, and as points; splats over time only as scenes. */
 static int fits(const adcgs_kind *kind, adcgs_want want)
 {
     if (kind->is_over_time)

@@ -5,10 +5,10 @@
 #include "media/kind.h"
 
 #include "media/kind_rows.h"
+#include "media/splats/splat_look.h"
 #include "system/extension.h"
 
 #include <ctype.h>
-#include <math.h>
 #include <strings.h>
 
 static const adcgs_kind unknown = {ADCGS_KIND_UNKNOWN, "a file of unknown kind", NULL, NULL, 0, 0};
@@ -129,12 +129,17 @@ static const adcgs_kind *find_bitmap(const look *l)
 /** Archives: the names of their files decide. */
 static const adcgs_kind *find_in_archive(const look *l)
 {
-    static const adcgs_kind sog = NO_SPLATS("splats (SOG)", TO_PLY), tsog = OVER_TIME("splats over time (TSOG)"),
+    static const adcgs_kind sog = SPLATS("splats (SOG)"), tsog = OVER_TIME("splats over time (TSOG)"),
                             d3dg = OVER_TIME("splats over time (params.npz of Dynamic 3D Gaussians)"),
                             npz = OTHER("arrays of NumPy (NPZ)", NULL), zip = OTHER("an archive (ZIP)", "unpack it first");
+    static const char *const names[] = {"means_l.webp", "means_u.webp", "scales.webp", "quats.webp",
+                                        "sh0.webp",     "shN_",         "meta.json"};
+    size_t i = 0;
     if (!begins(l, 0, "PK\3\4") && !begins(l, 0, "PK\5\6"))
         return NULL;
-    if (has(l, "means_l.webp") || has(l, "means_u.webp") || has(l, "meta.json"))
+    while (i < ADCGS_COUNTOF(names) && !has(l, names[i]))
+        i++;
+    if (i < ADCGS_COUNTOF(names))
         return !strcasecmp(l->extension, "tsog") || has(l, "tsog-playback") || has(l, "timeline") ? &tsog : &sog;
     if (has(l, "means3D.npy") || has(l, "rgb_colors.npy") || has(l, "unnorm_rotations.npy"))
         return &d3dg;
@@ -153,39 +158,17 @@ static const adcgs_kind *find_ply(const look *l)
     return has(l, " f_dc_0") || has(l, " packed_position") ? &plain : &other; /* the reader parses the header */
 }
 
-/**
- * .splat has 32 bytes per splat and no header: position and size as binary32, colour, rotation. All splats in the examined bytes
- * must be valid.
- */
-static const adcgs_kind *find_splat(const look *l)
+/** Formats of splats without a magic number. */
+static const adcgs_kind *find_splats(const look *l)
 {
-    static const adcgs_kind splat = NO_SPLATS("splats (.splat)", TO_PLY);
-    if (!l->size || l->size % 32 || l->n < 32)
-        return NULL;
-    for (size_t at = 0; at + 32 <= l->n; at += 32) {
-        double turn = 0.0;
-        for (size_t i = 0; i < 6; i++) {
-            const double v = (double)adcgs_bits_float(adcgs_load_le32(l->begin + at + 4 * i));
-            if (!(fabs(v) <= 1e8) || (i >= 3 && !(v >= 0.0 && v <= 1e6)))
-                return NULL;
-        }
-        for (size_t i = 28; i < 32; i++)
-            turn += pow((l->begin[at + i] - 128.0) / 128.0, 2);
-        if (!(turn > 0.7 && turn < 1.4))
-            return NULL;
-    }
-    return &splat;
+    static const adcgs_kind ksplat = SPLATS("splats (.ksplat)"), meta = SPLATS("splats (meta.json of SOG)");
+    return adcgs_ksplat_is(l->begin, l->n, l->size) ? &ksplat : adcgs_sog_meta_is(l->begin, l->n) ? &meta : NULL;
 }
 
-/** .ksplat has sections after a header of 4096 bytes that begins with a version and counts. */
-static const adcgs_kind *find_ksplat(const look *l)
+static const adcgs_kind *find_dot_splat(const look *l)
 {
-    static const adcgs_kind ksplat = NO_SPLATS("splats (.ksplat)", TO_PLY);
-    const uint32_t most = number(l, 4, 4, 0);
-    const float low = adcgs_bits_float(number(l, 36, 4, 0)), high = adcgs_bits_float(number(l, 40, 4, 0)); /* of harmonics */
-    if (l->n < 44 || number(l, 0, 4, 0) != 0x100 || number(l, 20, 2, 0) > 2 || most < 1 || !(low <= high))
-        return NULL;
-    return l->size >= 4096 + (uint64_t)1024 * most ? &ksplat : NULL;
+    static const adcgs_kind splat = SPLATS("splats (.splat)");
+    return adcgs_dot_splat_is(l->begin, l->n, l->size) ? &splat : NULL;
 }
 
 static size_t skip_blanks(const look *l)
@@ -214,7 +197,6 @@ static const adcgs_kind *find_json(const look *l)
         {{"\"featuresFolders\"", NULL, NULL}, NO_SCENE("Meshroom's cameras (SfM)", TO_COLMAP)},
         {{"\"reference_lla\"", NULL, NULL}, NO_SCENE("OpenSfM's reconstruction.json", TO_COLMAP)},
         {{"\"asset\"", "\"version\"", "\"accessors\""}, NO_SPLATS("a glTF text", "pack it as one binary file (GLB)")},
-        {{"\"means\"", "\"quats\"", "\"scales\""}, NO_SPLATS("the meta.json of splats (SOG)", TO_PLY)},
     };
     static const adcgs_kind scene = {ADCGS_KIND_SCENE, "the cameras of a scene (JSON)", NULL, NULL, 1, 0};
     const size_t at = skip_blanks(l);
@@ -290,8 +272,8 @@ static const adcgs_kind *find_packed(const look *l)
 const adcgs_kind *adcgs_kind_of(const uint8_t *begin, size_t n, uint64_t size, const uint8_t *tail, const char *name)
 {
     static const adcgs_kind *(*const finders[])(const look *) = {
-        find_in_boxes, find_in_tiff, find_bitmap,    find_in_archive, find_ply,   find_packed,
-        find_ksplat,   find_markup,  find_transport, find_json,       find_splat, find_table,
+        find_in_boxes, find_in_tiff, find_bitmap,    find_in_archive, find_ply,       find_packed,
+        find_splats,   find_markup,  find_transport, find_json,       find_dot_splat, find_table,
     };
     const look l = {begin, tail, name, adcgs_extension(name), n, size};
     const adcgs_kind *const plain = adcgs_kind_by_magic(begin, n);

@@ -5,7 +5,6 @@
 
 #include "media/kind.h"
 
-#define TO_PLY "convert it to PLY or SPZ first, as PlayCanvas' splat-transform does"
 #define TO_PNG "convert it to PNG, JPEG, TIFF or EXR first"
 #define TO_JPEG "develop it to JPEG, TIFF or PNG first"
 #define COLMAP_FOLDER "give the folder that has the model and its images"

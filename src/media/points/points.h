@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Point clouds in files: PLY and NPY by our own readers, Draco in a module (draco_shim.h). */
+/** \file Point clouds in files: PLY and NPY by our own readers, Draco in a module (draco_shim.h), and from splats. */
 #ifndef ADCGS_MEDIA_POINTS_POINTS_H
 #define ADCGS_MEDIA_POINTS_POINTS_H
 
@@ -28,7 +28,10 @@ void adcgs_points_free(adcgs_points *points);
  */
 void adcgs_points_round(adcgs_points *points);
 
-/** Read PLY, Draco or NPY, detected by content. Coordinates are at most FLT_MAX, and rounded by adcgs_points_round(). */
+/**
+ * Read PLY, Draco, NPY, or splats of any format (media/splats/splats.h), detected by content. Points of splats are their centres,
+ * with the colours seen from any direction. Coordinates are at most FLT_MAX, and rounded by adcgs_points_round().
+ */
 adcgs_status adcgs_points_read(adcgs_points *out, const char *path, adcgs_error *error);
 
 /**

@@ -14,10 +14,8 @@
 
 /* Origin: chosen by hand, not measured. */
 #define TEXT_MAX \
-    ((size_t)16 << 20)           /* bytes of JSON; splats need a few kilobytes, and jansson takes about 20 times the text in
+    ((size_t)16 << 20) /* bytes of JSON; splats need a few kilobytes, and jansson takes about 20 times the text in
                                        memory */
-#define SCALE_MIN 1.8048514e-35f /* e^-80: lower bound of scales, which flat splats get */
-#define SCALE_MAX 5.5406223e34   /* e^80: upper bound of scales */
 
 int adcgs_glb_is(const uint8_t *data, size_t bytes)
 {
@@ -163,9 +161,9 @@ static const char *put_rotation(adcgs_splats *s, uint32_t i, int k, const double
 static const char *put_scale(adcgs_splats *s, uint32_t i, int k, const double v[4])
 {
     for (int a = 0; a < 3; a++) {
-        if (!(v[a] >= 0.0 && v[a] <= SCALE_MAX))
+        if (!(v[a] >= 0.0 && v[a] <= (double)ADCGS_SPLATS_SCALE_MAX))
             return "numbers from 0 to e^80";
-        s->scale[a][i] = fmaxf((float)v[a], SCALE_MIN);
+        s->scale[a][i] = fmaxf((float)v[a], ADCGS_SPLATS_SCALE_MIN);
     }
     return NULL;
 }

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Splats at one time step, in memory and in files. The formats are PLY
- * (media/splats/splats_ply.h), SPZ (media/splats/spz.h), GLB (media/splats/glb.h) and, for writing only, SOG
- * (media/splats/sog.h). Reading detects the format by the first bytes, writing by the
+ * (media/splats/splats_ply.h), SPZ (spz.h), GLB (glb.h), SOG (sog.h) and, for
+ * reading only, compressed PLY (ply_packed.h), .splat (dot_splat.h) and .ksplat
+ * (ksplat.h). Reading detects the format by the content, writing by the
  * extension.
  */
 #ifndef ADCGS_MEDIA_SPLATS_SPLATS_H
@@ -15,7 +16,11 @@
 #define ADCGS_SPLATS_DC 0.28209479177387814 /**< the spherical harmonic of degree 0: 1 / (2 sqrt(pi)); definition */
 #define ADCGS_SPLATS_MAX (1u << 24)         /**< splats of a file; chosen by hand, not measured */
 #define ADCGS_SPLATS_DEGREE_MAX 3           /**< of harmonics; definition (3D Gaussian splatting, KHR_gaussian_splatting) */
-#define ADCGS_SPLATS_NAMES ".ply, .spz, .glb or .sog" /**< extensions of file names, for messages */
+#define ADCGS_SPLATS_SCALE_MIN \
+    1.8048514e-35f /**< e^-80: lower bound of scales, which flat splats get; chosen by hand, not measured */
+#define ADCGS_SPLATS_SCALE_MAX 5.5406223e34f /**< e^80: upper bound of scales; chosen by hand, not measured */
+#define ADCGS_SPLATS_FORMATS "PLY, SPZ, GLB, SOG, .splat or .ksplat" /**< formats that are read, for messages */
+#define ADCGS_SPLATS_NAMES ".ply, .spz, .glb or .sog"                /**< extensions of file names, for messages */
 
 /** World axes, right-handed: codes of adcgs_stream. */
 enum { ADCGS_SPLATS_UP_UNKNOWN, ADCGS_SPLATS_Y_UP, ADCGS_SPLATS_Z_UP, ADCGS_SPLATS_Y_DOWN };
@@ -60,12 +65,13 @@ adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primit
 /** True if the file begins like one of splats; any PLY file does. */
 int adcgs_splats_is(const char *path);
 /**
- * Read a file of splats. Harmonics that are all zero are dropped.
+ * Read a file of splats. meta.json of an unpacked SOG stands for its images in the same folder. Harmonics that are all zero are
+ * dropped.
  * \return ADCGS_ERR_UNSUPPORTED for unsupported features of the format. ADCGS_ERR_DATA, naming the error and its position, for
  * another kind of file, and one that has no splats, ends early or holds a non-finite number.
  */
 adcgs_status adcgs_splats_read(adcgs_splats *out, const char *path, adcgs_error *error);
-/** As adcgs_splats_read() from memory. A zero byte must follow the data. */
+/** As adcgs_splats_read() from memory, except for meta.json. A zero byte must follow the data. */
 adcgs_status adcgs_splats_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 
 /** Options for writing splats. */

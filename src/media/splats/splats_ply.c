@@ -6,6 +6,7 @@
 
 #include "media/points/ply.h"
 #include "media/splats/offset.h"
+#include "media/splats/ply_packed.h"
 #include "system/median.h"
 
 #include <math.h>
@@ -174,9 +175,7 @@ static adcgs_status check_kind(adcgs_ply *ply)
 {
     static const struct {
         const char *property, *kind;
-    } others[] = {{"packed_position",
-                   "a compressed PLY (it has packed_position), expected uncompressed splats: decompress it first"},
-                  {"trbf_center", "splats over time (SpacetimeGaussians: it has trbf_center), expected static ones"},
+    } others[] = {{"trbf_center", "splats over time (SpacetimeGaussians: it has trbf_center), expected static ones"},
                   {"log_duration", "splats over time (FreeTimeGS: it has log_duration), expected static ones"},
                   {"scale_t", "splats over time (4D Gaussians: it has scale_t), expected static ones"}};
     for (size_t i = 0; i < ADCGS_COUNTOF(others); i++)
@@ -275,11 +274,19 @@ static adcgs_status read_splats(adcgs_ply *ply, adcgs_splats *out)
     return read_vertices(ply, &t);
 }
 
+/** Read splats of a compressed PLY. */
+static adcgs_status read_packed(adcgs_ply *ply, adcgs_splats *out)
+{
+    ADCGS_TRY(adcgs_ply_packed_parse(out, ply));
+    out->antialiased = (uint8_t)says_antialiased(ply);
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_splats_parse_ply(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
 {
     adcgs_ply *ply;
     ADCGS_TRY(adcgs_ply_open(&ply, data, bytes, path, error));
-    const adcgs_status status = read_splats(ply, out);
+    const adcgs_status status = adcgs_ply_packed_is(ply) ? read_packed(ply, out) : read_splats(ply, out);
     adcgs_ply_close(&ply);
     return status;
 }

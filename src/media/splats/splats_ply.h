@@ -6,7 +6,7 @@
  * = 0.5 + ADCGS_SPLATS_DC f_dc, opacity a logit, scales natural logarithms, the
  * quaternion w x y z of any length. Two conventions of comments mark splats
  * trained with antialiasing: Brush's "SplatRenderMode: mip" and Postshot's
- * "antialiased 1".
+ * "antialiased 1". Compressed PLY is read, too (media/splats/ply_packed.h).
  */
 #ifndef ADCGS_MEDIA_SPLATS_SPLATS_PLY_H
 #define ADCGS_MEDIA_SPLATS_SPLATS_PLY_H
@@ -19,7 +19,7 @@
  * adcgs_splats_parse() of data that adcgs_ply_is() accepts: text, or binary of either byte order; float or double properties, in
  * any order. nx, ny, nz and unknown properties are skipped; f_rest_* must be none, 9, 24 or 45. An opacity of +inf is 1, of -inf
  * 0. Scales below -80, down to -inf, are flat, and so is the third axis without scale_2 (surfels of 2DGS). ADCGS_ERR_UNSUPPORTED
- * for a compressed PLY and for splats over time, ADCGS_ERR_DATA also for a scale above e^80. On failure the caller
+ * for splats over time, ADCGS_ERR_DATA also for a scale above e^80. On failure the caller
  * clears *out.
  */
 adcgs_status adcgs_splats_parse_ply(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
