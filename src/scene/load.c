@@ -54,7 +54,8 @@ typedef struct wanted {
 static adcgs_status decode_whole(const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
 {
     if (scene->splats)
-        return adcgs_splat_scene_render(scene->splats, scene->background, &view->camera, image, view->path, error);
+        return adcgs_splat_scene_render(scene->splats, scene->background, &view->camera, view->source_time, image, view->path,
+                                        error);
     if (!view->is_video)
         ADCGS_TRY(probe(view, view->path, error));
     ADCGS_TRY(view->is_video ? adcgs_clips_read(scene->clips, view->path, view->frame, image, error)

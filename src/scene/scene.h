@@ -39,6 +39,7 @@ typedef enum adcgs_axes { ADCGS_AXES_UNKNOWN, ADCGS_AXES_Y_UP, ADCGS_AXES_Z_UP, 
 typedef struct adcgs_scene_view {
     adcgs_camera camera; /**< of the undistorted image at full size; name is the file's stem */
     double time;         /**< seconds */
+    double source_time;  /**< for splats over time: seconds in their source; the same in a part of the scene */
     char *path;          /**< of the image or the video */
     char *mask;          /**< of the mask, an image that marks the pixels that count, or NULL */
     char *moving;        /**< of an image that marks moving regions: ground truth, for measuring only; or NULL */

@@ -15,18 +15,105 @@
 /* Largest opacity of a primitive; literature (3D Gaussian splatting), as in the specification. */
 #define OPACITY_MAX 0.99f
 
-void adcgs_splat_scene_free(adcgs_splat_scene **splats)
+adcgs_splat_scene *adcgs_splat_scene_create(void)
 {
-    if (*splats)
-        adcgs_splats_free(&(*splats)->splats);
-    free(*splats);
-    *splats = NULL;
+    adcgs_splat_scene *const s = calloc(1, sizeof *s);
+    if (!s)
+        return NULL;
+    s->radius = 1.0;
+    for (int i = 0; i < ADCGS_SPLAT_STATES; i++)
+        s->state[i].time = -1.0;
+    pthread_mutex_init(&s->lock, NULL);
+    pthread_cond_init(&s->unused, NULL);
+    return s;
 }
 
-/** Computes colours for a camera's viewing directions: [3][slots]. */
-static void evaluate_colours(float *colours, size_t slots, const adcgs_splat_scene *s, const adcgs_camera *camera)
+void adcgs_splat_scene_free(adcgs_splat_scene **scene)
 {
-    const adcgs_splats *splats = &s->splats;
+    adcgs_splat_scene *const s = *scene;
+    if (s) {
+        adcgs_splats_free(&s->splats);
+        for (int i = 0; i < ADCGS_SPLAT_STATES; i++)
+            adcgs_splats_free(&s->state[i].splats);
+        adcgs_dynamic_free(&s->dynamic);
+        pthread_mutex_destroy(&s->lock);
+        pthread_cond_destroy(&s->unused);
+    }
+    free(s);
+    *scene = NULL;
+}
+
+void adcgs_splat_scene_normalise(const adcgs_splat_scene *s, adcgs_splats *splats)
+{
+    for (uint32_t i = 0; i < splats->n; i++) {
+        if (!splats->antialiased) /* else the limit applies in each view */
+            splats->opacity[i] = fminf(splats->opacity[i], OPACITY_MAX);
+        for (int a = 0; a < 3; a++) {
+            const double centre = s->centre[a] - splats->offset[a];
+            splats->mean[a][i] = (float)(((double)splats->mean[a][i] - centre) / s->radius);
+            splats->scale[a][i] = (float)((double)splats->scale[a][i] / s->radius);
+            if (!splats->degree)
+                splats->colour[a][i] = fmaxf(splats->colour[a][i], 0.0f);
+        }
+    }
+}
+
+/* ---- States ---- */
+
+/** The state of a time, or the unused one whose last use is longest ago; NULL: all are in use at other times. */
+static adcgs_splat_state *choose_state(adcgs_splat_scene *s, double time)
+{
+    adcgs_splat_state *oldest = NULL;
+    for (int i = 0; i < ADCGS_SPLAT_STATES; i++) {
+        adcgs_splat_state *const state = &s->state[i];
+        if (state->time >= time && state->time <= time)
+            return state;
+        if (!state->users && (!oldest || state->used < oldest->used))
+            oldest = state;
+    }
+    return oldest;
+}
+
+/** Borrows the state of a time until give_back(). It is read under the lock: readers of other times wait, which keeps memory low. */
+static adcgs_status borrow(adcgs_splat_state **out, adcgs_splat_scene *s, double time, adcgs_error *error)
+{
+    adcgs_status status = ADCGS_OK;
+    adcgs_splat_state *state;
+    pthread_mutex_lock(&s->lock);
+    while (!(state = choose_state(s, time)))
+        pthread_cond_wait(&s->unused, &s->lock);
+    if (!(state->time >= time && state->time <= time)) {
+        adcgs_splats_free(&state->splats);
+        state->time = -1.0;
+        status = adcgs_dynamic_at(s->dynamic, time, &state->splats, error);
+        if (status == ADCGS_OK) {
+            adcgs_splat_scene_normalise(s, &state->splats);
+            state->time = time;
+        }
+    }
+    if (status == ADCGS_OK) {
+        state->users++;
+        state->used = ++s->uses;
+    }
+    pthread_mutex_unlock(&s->lock);
+    *out = state;
+    return status;
+}
+
+static void give_back(adcgs_splat_scene *s, adcgs_splat_state *state)
+{
+    pthread_mutex_lock(&s->lock);
+    state->users--;
+    pthread_cond_broadcast(&s->unused);
+    pthread_mutex_unlock(&s->lock);
+}
+
+/* ---- Rendering ---- */
+
+/** Computes colours for a camera's viewing directions: [3][slots]. */
+static void evaluate_colours(float *colours, size_t slots, const adcgs_splat_scene *s, const adcgs_splats *splats,
+                             const adcgs_camera *camera)
+{
     const size_t n = (size_t)(splats->degree + 1) * (size_t)(splats->degree + 1) - 1;
     for (uint32_t i = 0; i < splats->n; i++) {
         const float *rest = splats->harmonics + i * 3 * n;
@@ -94,22 +181,22 @@ static adcgs_status workspace_make(workspace *w, const adcgs_splats *s, const ch
     return ADCGS_OK;
 }
 
-static adcgs_status draw(float *rgb, const adcgs_splat_scene *s, const float background[3], const adcgs_camera *camera,
-                         const workspace *w, adcgs_error *error)
+static adcgs_status draw(float *rgb, const adcgs_splat_scene *s, const adcgs_splats *splats, const float background[3],
+                         const adcgs_camera *camera, const workspace *w, adcgs_error *error)
 {
     adcgs_cpu_level cpu;
     adcgs_raster *raster = NULL;
     adcgs_primitives primitives;
     adcgs_view view;
-    adcgs_splats_primitives(&s->splats, &primitives);
+    adcgs_splats_primitives(splats, &primitives);
     ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &cpu, error)); /* the image does not depend on it */
     ADCGS_TRY(adcgs_view_init(&view, camera, s->centre, s->radius, error));
     if (w->colours)
-        evaluate_colours(w->colours, w->slots, s, camera);
+        evaluate_colours(w->colours, w->slots, s, splats, camera);
     for (size_t c = 0; c < 3 && w->colours; c++)
         primitives.colour[c] = w->colours + c * w->slots;
     if (w->opacities) {
-        fade(w->opacities, &s->splats, &view);
+        fade(w->opacities, splats, &view);
         primitives.opacity = w->opacities;
     }
     ADCGS_TRY(adcgs_raster_create(&raster, cpu, NULL, NULL, error));
@@ -118,18 +205,18 @@ static adcgs_status draw(float *rgb, const adcgs_splat_scene *s, const float bac
     return status;
 }
 
-adcgs_status adcgs_splat_scene_render(const adcgs_splat_scene *splats, const float background[3], const adcgs_camera *camera,
-                                      adcgs_image *out, const char *path, adcgs_error *error)
+static adcgs_status render(const adcgs_splat_scene *scene, const adcgs_splats *splats, const float background[3],
+                           const adcgs_camera *camera, adcgs_image *out, const char *path, adcgs_error *error)
 {
     const size_t plane = (size_t)camera->width * (size_t)camera->height;
     float *planar = malloc(3 * plane * sizeof *planar);
     workspace w = {0};
-    adcgs_status status = planar ? workspace_make(&w, &splats->splats, path, error)
+    adcgs_status status = planar ? workspace_make(&w, splats, path, error)
                                  : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for a view", path);
     if (status == ADCGS_OK)
         status = adcgs_image_alloc(out, camera->width, camera->height, 3, path, error);
     if (status == ADCGS_OK) {
-        status = draw(planar, splats, background, camera, &w, error);
+        status = draw(planar, scene, splats, background, camera, &w, error);
         for (size_t i = 0; i < 3 * plane && status == ADCGS_OK; i++)
             out->data[i] = fminf(fmaxf(planar[i % 3 * plane + i / 3], 0.0f), 1.0f);
         if (status != ADCGS_OK) {
@@ -140,5 +227,17 @@ adcgs_status adcgs_splat_scene_render(const adcgs_splat_scene *splats, const flo
     free(planar);
     free(w.colours);
     free(w.opacities);
+    return status;
+}
+
+adcgs_status adcgs_splat_scene_render(adcgs_splat_scene *scene, const float background[3], const adcgs_camera *camera,
+                                      double time, adcgs_image *out, const char *path, adcgs_error *error)
+{
+    adcgs_splat_state *state;
+    if (!scene->dynamic)
+        return render(scene, &scene->splats, background, camera, out, path, error);
+    ADCGS_TRY(borrow(&state, scene, time, error));
+    const adcgs_status status = render(scene, &state->splats, background, camera, out, path, error);
+    give_back(scene, state);
     return status;
 }

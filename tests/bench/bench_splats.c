@@ -69,12 +69,12 @@ static void bound(adcgs_splats *s, int clip)
     }
 }
 
-static adcgs_status measure_view(double *psnr, const adcgs_splat_scene *splats, const float background[3],
-                                 const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_error *error)
+static adcgs_status measure_view(double *psnr, adcgs_splat_scene *splats, const float background[3], const adcgs_scene *scene,
+                                 const adcgs_scene_view *view, adcgs_error *error)
 {
     adcgs_image picture;
     float *truth = NULL;
-    ADCGS_TRY(adcgs_splat_scene_render(splats, background, &view->camera, &picture, view->path, error));
+    ADCGS_TRY(adcgs_splat_scene_render(splats, background, &view->camera, 0.0, &picture, view->path, error));
     const size_t plane = (size_t)picture.width * (size_t)picture.height;
     uint8_t *const levels = malloc(3 * plane);
     float *const planar = malloc(3 * plane * sizeof *planar);

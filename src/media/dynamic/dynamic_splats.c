@@ -3,8 +3,9 @@
 #include "config.h"
 
 #include "media/arrays/zip_read.h"
-#include "media/dynamic/motion.h"
 #include "media/dynamic/dynamic_readers.h"
+#include "media/dynamic/motion.h"
+#include "media/dynamic/splat_files.h"
 #include "system/file.h"
 #include "system/paths.h"
 
@@ -30,7 +31,9 @@ static const adcgs_dynamic_reader *find_reader(const uint8_t *data, size_t bytes
 int adcgs_dynamic_is(const char *path)
 {
     FILE *file;
-    if (adcgs_is_folder(path) || adcgs_file_open(&file, path, NULL) != ADCGS_OK)
+    if (adcgs_is_folder(path))
+        return adcgs_splat_files_are(path);
+    if (adcgs_file_open(&file, path, NULL) != ADCGS_OK)
         return 0;
     uint8_t *data = calloc(1, ADCGS_DYNAMIC_LOOK + 1);
     size_t n = data ? fread(data, 1, ADCGS_DYNAMIC_LOOK, file) : 0;
@@ -57,12 +60,11 @@ static void forget(adcgs_dynamic *m)
     m->data = NULL;
 }
 
-/** Takes data from malloc(), also on failure. */
-static adcgs_status open_data(adcgs_dynamic **out, uint8_t *data, size_t bytes, const char *path,
-                              const adcgs_dynamic_options *options, adcgs_error *error)
+/** Takes data from malloc(), also on failure. reader: NULL if there is none. */
+static adcgs_status open_data(adcgs_dynamic **out, const adcgs_dynamic_reader *reader, uint8_t *data, size_t bytes,
+                              const char *path, const adcgs_dynamic_options *options, adcgs_error *error)
 {
     static const adcgs_dynamic_options defaults;
-    const adcgs_dynamic_reader *const reader = find_reader(data, bytes);
     adcgs_dynamic *m = reader ? calloc(1, sizeof *m) : NULL;
     char *const name = strdup(path);
     *out = NULL;
@@ -88,8 +90,10 @@ adcgs_status adcgs_dynamic_open(adcgs_dynamic **out, const char *path, const adc
     uint8_t *data;
     size_t bytes;
     *out = NULL;
+    if (adcgs_is_folder(path))
+        return open_data(out, &adcgs_dynamic_files, NULL, 0, path, options, error);
     ADCGS_TRY(adcgs_file_load(&data, &bytes, path, FILE_MAX, error));
-    return open_data(out, data, bytes, path, options, error);
+    return open_data(out, find_reader(data, bytes), data, bytes, path, options, error);
 }
 
 adcgs_status adcgs_dynamic_parse(adcgs_dynamic **out, const uint8_t *data, size_t bytes, const char *path,
@@ -100,7 +104,7 @@ adcgs_status adcgs_dynamic_parse(adcgs_dynamic **out, const uint8_t *data, size_
     if (!copy)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     memcpy(copy, data, bytes);
-    return open_data(out, copy, bytes, path, options, error);
+    return open_data(out, find_reader(copy, bytes), copy, bytes, path, options, error);
 }
 
 double adcgs_dynamic_duration(const adcgs_dynamic *m)

@@ -36,7 +36,10 @@ typedef struct adcgs_dynamic {
     void *state; /**< the reader's */
 } adcgs_dynamic;
 
-/** True if a file of splats over time is at path, by its content. False for static splats. */
+/**
+ * True if path is a file of splats over time, by its content, or a folder of numbered files of static splats. False for one file
+ * of static splats.
+ */
 int adcgs_dynamic_is(const char *path);
 /**
  * Open a source. Splats are read now or when a state is requested; memory is at most that of a few states, or the size of the

@@ -4,6 +4,7 @@
 
 #include "scene/layouts/open.h"
 
+#include "media/dynamic/dynamic_splats.h"
 #include "media/kind.h"
 #include "media/splats/splats.h"
 #include "media/video/video.h"
@@ -217,6 +218,13 @@ static adcgs_status refuse_above(const char *folder, adcgs_error *error)
     return status;
 }
 
+static adcgs_status read_splats(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
+{
+    const adcgs_dynamic_options clock = {options->rate, options->splat_frames, options->is_partial};
+    ADCGS_TRY(adcgs_splat_scene_read(scene, !options->points_path, &clock, path, error));
+    return adcgs_frames_keep(scene, &options->frames, path, error);
+}
+
 static adcgs_status bare(const char *path, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a scene: it has no camera poses" HINT, path);
@@ -242,8 +250,10 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     case ADCGS_DATASET_ADCGS:
         return read_scene_json(scene, options, error);
     case ADCGS_DATASET_SPLATS:
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats", scene->directory);
+        return read_splats(scene, scene->directory, options, error);
     default:
+        if (adcgs_dynamic_is(scene->directory))
+            return read_splats(scene, scene->directory, options, error);
         ADCGS_TRY(adcgs_capture_refuse_folder(scene->directory, error));
         ADCGS_TRY(refuse_sequence(scene->directory, error));
         ADCGS_TRY(refuse_above(scene->directory, error));
@@ -272,8 +282,9 @@ static adcgs_status read_file(adcgs_scene *scene, const char *path, char **point
 {
     json_t *root;
     int is_scene_file = options->dataset == ADCGS_DATASET_ADCGS;
-    if (options->dataset == ADCGS_DATASET_SPLATS || (options->dataset == ADCGS_DATASET_AUTO && adcgs_splats_is(path)))
-        return adcgs_splat_scene_read(scene, !options->points_path, path, error);
+    if (options->dataset == ADCGS_DATASET_SPLATS ||
+        (options->dataset == ADCGS_DATASET_AUTO && (adcgs_splats_is(path) || adcgs_dynamic_is(path))))
+        return read_splats(scene, path, options, error);
     if (options->dataset == ADCGS_DATASET_AUTO && is_footage(path))
         return bare(path, error);
     ADCGS_TRY(adcgs_kind_check(path, ADCGS_WANT_SCENE, error));

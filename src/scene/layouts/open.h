@@ -42,6 +42,8 @@ typedef struct adcgs_scene_options {
     int has_background;
     float background[3];
     adcgs_fps rate;             /**< of the selected frames; unknown: the scene's, else 30 */
+    uint32_t splat_frames;      /**< frames of splats over time whose file does not state them; 0: the default */
+    int is_partial;             /**< read splats over time of which a part is lost (adcgs_dynamic_options) */
     int dataset;                /**< an adcgs_dataset */
     const adcgs_footage *taken; /**< for a scene file: footage for adcgs_scene_file_read(); or NULL */
     int is_outline;             /**< read only images that determine a size; alpha and background are not determined */

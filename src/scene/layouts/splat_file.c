@@ -13,7 +13,6 @@
 #include <stdlib.h>
 
 /* Origin, unless a line states one: chosen by hand, not measured. */
-#define OPACITY_MAX 0.99f              /* largest opacity of a primitive; definition of the bitstream */
 #define OPACITY_LEAST (1.0f / 255.0f)  /* fainter splats are not rendered; definition of the bitstream */
 #define POINT_OPACITY 0.1f             /* least opacity of a splat that becomes a point */
 #define INSIDE 0.95                    /* share of the splats within the radius */
@@ -23,62 +22,81 @@
 #define RADIUS_MIN 1e-9                /* world units */
 #define RADIUS_MAX 1e9                 /* world units */
 
-/* Cameras for training, validation and testing; chosen by hand, not measured. */
+#define REGION_TIMES 5       /* times from whose splats the region follows */
+#define REGION_SPLATS 200000 /* splats that it follows from, at most */
+#define DYNAMIC_VIEWS 640    /* training views of splats over time, of all frames together */
+#define FRAME_VIEWS_MIN 4    /* training views of a frame, at least */
+#define FRAME_VIEWS_MAX 32   /* the same, at most */
+#define FIXED_TIMES 8        /* times of a fixed camera for validation or testing */
+
+/* Cameras for training, validation and testing of static splats; chosen by hand, not measured. */
 static const uint32_t n_views[ADCGS_SPLITS] = {100, 10, 20};
+/* Fixed cameras for validation and testing of splats over time; chosen by hand, not measured. */
+static const uint32_t n_fixed[ADCGS_SPLITS] = {0, 2, 6};
 
 /* ---- Region of the splats ---- */
 
-/** Distance of a splat from the centre, plus its own size. */
-static double reach(const adcgs_splats *s, uint32_t i, const double centre[3])
+/** Centres and sizes of visible splats, of one time or of several. */
+typedef struct sample {
+    size_t n;
+    double (*x)[3], *size, *values;
+} sample;
+
+static adcgs_status sample_alloc(sample *m, size_t most, const char *path, adcgs_error *error)
 {
-    double square = 0.0, size = 0.0;
-    for (int a = 0; a < 3; a++) {
-        square += pow((double)s->mean[a][i] - centre[a], 2);
-        size = fmax(size, (double)s->scale[a][i]);
-    }
-    return sqrt(square) + size;
+    m->n = 0;
+    m->x = malloc((most + 1) * sizeof *m->x);
+    m->size = malloc((most + 1) * sizeof *m->size);
+    m->values = malloc((most + 1) * sizeof *m->values);
+    return m->x && m->size && m->values ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
 }
 
-/** Uses medians, so that a few distant splats do not matter. values: [n], scratch. */
-static adcgs_status find_region(adcgs_splat_scene *s, double *values, const char *path, adcgs_error *error)
+static void sample_clear(sample *m)
 {
-    const adcgs_splats *splats = &s->splats;
-    size_t n = 0;
-    for (int a = 0; a < 3; a++) {
-        n = 0;
-        for (uint32_t i = 0; i < splats->n; i++)
-            if (splats->opacity[i] >= OPACITY_LEAST)
-                values[n++] = (double)splats->mean[a][i];
-        if (!n)
-            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no splat is visible: none has an opacity of at least 1/255", path);
-        adcgs_sort(values, n);
-        s->centre[a] = values[n / 2];
+    free(m->x);
+    free(m->size);
+    free(m->values);
+}
+
+/** Adds every step'th splat that is visible, in world coordinates less the offset. */
+static void sample_add(sample *m, const adcgs_splats *s, uint32_t step)
+{
+    for (uint32_t i = 0; i < s->n; i += step) {
+        if (!(s->opacity[i] >= OPACITY_LEAST))
+            continue;
+        m->size[m->n] = 0.0;
+        for (int a = 0; a < 3; a++) {
+            m->x[m->n][a] = (double)s->mean[a][i];
+            m->size[m->n] = fmax(m->size[m->n], (double)s->scale[a][i]);
+        }
+        m->n++;
     }
-    n = 0;
-    for (uint32_t i = 0; i < splats->n; i++)
-        if (splats->opacity[i] >= OPACITY_LEAST)
-            values[n++] = reach(splats, i, s->centre);
-    adcgs_sort(values, n);
-    s->radius = values[(size_t)(INSIDE * (double)(n - 1))];
+}
+
+/** Uses medians, so that a few distant splats do not matter. */
+static adcgs_status find_region(adcgs_splat_scene *s, sample *m, const char *path, adcgs_error *error)
+{
+    if (!m->n)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no splat is visible: none has an opacity of at least 1/255", path);
+    for (int a = 0; a < 3; a++) {
+        for (size_t i = 0; i < m->n; i++)
+            m->values[i] = m->x[i][a];
+        adcgs_sort(m->values, m->n);
+        s->centre[a] = m->values[m->n / 2];
+    }
+    for (size_t i = 0; i < m->n; i++) {
+        double square = 0.0;
+        for (int a = 0; a < 3; a++)
+            square += pow(m->x[i][a] - s->centre[a], 2);
+        m->values[i] = sqrt(square) + m->size[i];
+    }
+    adcgs_sort(m->values, m->n);
+    s->radius = m->values[(size_t)(INSIDE * (double)(m->n - 1))];
     if (!(s->radius >= RADIUS_MIN && s->radius <= RADIUS_MAX))
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: the splats lie within %g units, expected 1e-9 to 1e9", path, s->radius);
+    for (int a = 0; a < 3; a++) /* in world coordinates */
+        s->centre[a] += s->splats.offset[a];
     return ADCGS_OK;
-}
-
-/** Converts world units to those of the region, and limits values to a primitive's range. */
-static void normalise(adcgs_splat_scene *s)
-{
-    adcgs_splats *splats = &s->splats;
-    for (uint32_t i = 0; i < splats->n; i++) {
-        if (!splats->antialiased) /* else the limit applies in each view */
-            splats->opacity[i] = fminf(splats->opacity[i], OPACITY_MAX);
-        for (int a = 0; a < 3; a++) {
-            splats->mean[a][i] = (float)(((double)splats->mean[a][i] - s->centre[a]) / s->radius);
-            splats->scale[a][i] = (float)((double)splats->scale[a][i] / s->radius);
-            if (!splats->degree)
-                splats->colour[a][i] = fmaxf(splats->colour[a][i], 0.0f);
-        }
-    }
 }
 
 /* ---- Cameras ---- */
@@ -111,23 +129,69 @@ static void spread(double out[3], uint32_t i, uint32_t n, int split)
     out[2] = flat * sin(angle);
 }
 
-static adcgs_status add_views(adcgs_scene *scene, int split, const char *path, adcgs_error *error)
+/** A view in direction `index` of a spiral of `of` directions, at a distance that alternates. time: 0 to 1. */
+static adcgs_status add_view(adcgs_scene *scene, int split, uint32_t index, uint32_t of, double time, const char *path,
+                             adcgs_error *error)
 {
     static const double shells[SHELLS] = {1.0, 0.7};
-    const uint32_t n = n_views[split];
+    const uint32_t n = scene->n_views[split];
+    adcgs_scene_view *const view = &scene->views[split][n];
+    double out[3];
+    spread(out, index, of, split);
+    aim(&view->camera, scene->splats, out, shells[index % SHELLS] * scene->splats->radius / sin(HALF_FIELD));
+    snprintf(view->camera.name, sizeof view->camera.name, "%s_%03u", adcgs_split_name((adcgs_split)split), n);
+    view->time = time;
+    view->source_time = time * scene->duration;
+    view->path = strdup(path);
+    if (!view->path)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    scene->n_views[split]++;
+    return ADCGS_OK;
+}
+
+static adcgs_status alloc_views(adcgs_scene *scene, int split, uint32_t n, const char *path, adcgs_error *error)
+{
     scene->views[split] = calloc(n, sizeof *scene->views[split]);
-    for (uint32_t i = 0; scene->views[split] && i < n; i++) {
-        adcgs_scene_view *view = &scene->views[split][i];
-        double out[3];
-        spread(out, i, n, split);
-        aim(&view->camera, scene->splats, out, shells[i % SHELLS] * scene->splats->radius / sin(HALF_FIELD));
-        snprintf(view->camera.name, sizeof view->camera.name, "%s_%03u", adcgs_split_name((adcgs_split)split), i);
-        view->path = strdup(path);
-        if (!view->path)
-            break;
-        scene->n_views[split] = i + 1;
+    return scene->views[split] ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+}
+
+static adcgs_status add_static_views(adcgs_scene *scene, const char *path, adcgs_error *error)
+{
+    for (int split = 0; split < ADCGS_SPLITS; split++) {
+        ADCGS_TRY(alloc_views(scene, split, n_views[split], path, error));
+        for (uint32_t i = 0; i < n_views[split]; i++)
+            ADCGS_TRY(add_view(scene, split, i, n_views[split], 0.0, path, error));
     }
-    return scene->n_views[split] == n ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    return ADCGS_OK;
+}
+
+/** Training views of all frames: those of a frame are spread over all directions, and differ from frame to frame. */
+static adcgs_status add_training_views(adcgs_scene *scene, uint32_t frames, const char *path, adcgs_error *error)
+{
+    const uint32_t each = ADCGS_MIN(ADCGS_MAX(DYNAMIC_VIEWS / frames, FRAME_VIEWS_MIN), FRAME_VIEWS_MAX), all = each * frames;
+    ADCGS_TRY(alloc_views(scene, ADCGS_SPLIT_TRAIN, all, path, error));
+    for (uint32_t f = 0; f < frames; f++)
+        for (uint32_t k = 0; k < each; k++)
+            ADCGS_TRY(add_view(scene, ADCGS_SPLIT_TRAIN, k * frames + f, all, f / (frames - 1.0), path, error));
+    return ADCGS_OK;
+}
+
+/**
+ * Fixed cameras at some frames, so that the pixels that change with time are known. Continuous splats are seen halfway between
+ * frames.
+ */
+static adcgs_status add_fixed_views(adcgs_scene *scene, int split, uint32_t frames, const char *path, adcgs_error *error)
+{
+    const uint32_t times = ADCGS_MIN(frames, FIXED_TIMES);
+    const int between = scene->splats->dynamic->is_continuous;
+    ADCGS_TRY(alloc_views(scene, split, n_fixed[split] * times, path, error));
+    for (uint32_t c = 0; c < n_fixed[split]; c++)
+        for (uint32_t k = 0; k < times; k++) {
+            const double frame = times > 1 ? floor((double)k * (frames - 1) / (times - 1) + 0.5) : 0.0;
+            const double aside = !between ? 0.0 : frame < frames - 1.0 ? 0.5 : -0.5;
+            ADCGS_TRY(add_view(scene, split, c, n_fixed[split], (frame + aside) / (frames - 1.0), path, error));
+        }
+    return ADCGS_OK;
 }
 
 /* ---- The scene ---- */
@@ -158,24 +222,72 @@ static adcgs_status take_points(adcgs_points *out, const adcgs_splats *s, const 
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_splat_scene_read(adcgs_scene *scene, int want_points, const char *path, adcgs_error *error)
+/** Splats that do not change with time: the file's, or the only frame of splats over time. */
+static adcgs_status read_static(adcgs_scene *scene, int want_points, const char *path, adcgs_error *error)
 {
-    adcgs_splat_scene *s = scene->splats = calloc(1, sizeof *s);
-    if (!s)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    ADCGS_TRY(adcgs_splats_read(&s->splats, path, error));
-    double *values = malloc(s->splats.n * sizeof *values);
-    const adcgs_status status =
-        values ? find_region(s, values, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    free(values);
+    adcgs_splat_scene *const s = scene->splats;
+    sample m;
+    adcgs_status status = sample_alloc(&m, s->splats.n, path, error);
+    if (status == ADCGS_OK) {
+        sample_add(&m, &s->splats, 1);
+        status = find_region(s, &m, path, error);
+    }
+    sample_clear(&m);
     ADCGS_TRY(status);
     if (want_points)
         ADCGS_TRY(take_points(&scene->points, &s->splats, path, error));
-    normalise(s);
-    for (int a = 0; a < 3; a++) /* in world coordinates; the splats are relative to the offset */
-        s->centre[a] += s->splats.offset[a];
-    for (int split = 0; split < ADCGS_SPLITS; split++)
-        ADCGS_TRY(add_views(scene, split, path, error));
+    adcgs_splat_scene_normalise(s, &s->splats);
+    return add_static_views(scene, path, error);
+}
+
+/** Finds the region that splats over time occupy at some times. */
+static adcgs_status survey(adcgs_splat_scene *s, sample *m, const char *path, adcgs_error *error)
+{
+    for (int i = 0; i < REGION_TIMES; i++) {
+        adcgs_splats state;
+        ADCGS_TRY(adcgs_dynamic_at(s->dynamic, adcgs_dynamic_duration(s->dynamic) * i / (REGION_TIMES - 1.0), &state, error));
+        const uint32_t step = (uint32_t)((uint64_t)state.n * REGION_TIMES / REGION_SPLATS) + 1;
+        sample_add(m, &state, step);
+        adcgs_splats_free(&state);
+    }
+    return find_region(s, m, path, error);
+}
+
+static adcgs_status read_dynamic(adcgs_scene *scene, const char *path, adcgs_error *error)
+{
+    adcgs_splat_scene *const s = scene->splats;
+    const uint32_t frames = s->dynamic->frames;
+    sample m;
+    adcgs_status status = sample_alloc(&m, REGION_SPLATS + REGION_TIMES, path, error);
+    if (status == ADCGS_OK)
+        status = survey(s, &m, path, error);
+    sample_clear(&m);
+    ADCGS_TRY(status);
+    adcgs_splat_scene_normalise(s, &s->splats);
+    scene->duration = adcgs_dynamic_duration(s->dynamic);
+    scene->rate = s->dynamic->rate;
+    if (*s->dynamic->remark)
+        adcgs_scene_remark(scene, "%s", s->dynamic->remark);
+    ADCGS_TRY(add_training_views(scene, frames, path, error));
+    ADCGS_TRY(add_fixed_views(scene, ADCGS_SPLIT_VAL, frames, path, error));
+    return add_fixed_views(scene, ADCGS_SPLIT_TEST, frames, path, error);
+}
+
+adcgs_status adcgs_splat_scene_read(adcgs_scene *scene, int want_points, const adcgs_dynamic_options *options, const char *path,
+                                    adcgs_error *error)
+{
+    adcgs_splat_scene *const s = scene->splats = adcgs_splat_scene_create();
+    if (!s)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (adcgs_dynamic_is(path)) {
+        ADCGS_TRY(adcgs_dynamic_open(&s->dynamic, path, options, error));
+        ADCGS_TRY(adcgs_dynamic_at(s->dynamic, 0.0, &s->splats, error));
+    } else
+        ADCGS_TRY(adcgs_splats_read(&s->splats, path, error));
+    const int moves = s->dynamic && s->dynamic->frames > 1;
+    ADCGS_TRY(moves ? read_dynamic(scene, path, error) : read_static(scene, want_points, path, error));
+    if (!moves)
+        adcgs_dynamic_free(&s->dynamic);
     scene->axes = s->splats.axes;
     return ADCGS_OK;
 }
