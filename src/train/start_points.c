@@ -5,6 +5,7 @@
 #include "grad/random.h"
 #include "init/motion_check.h"
 #include "init/rigid/body_pose.h"
+#include "init/splats/splat_motion.h"
 #include "train/density/visibility.h"
 #include "train/resolve.h"
 #include "train/scene_frame.h"
@@ -250,7 +251,7 @@ static adcgs_status find_points(adcgs_start_points *c, const adcgs_visibility *s
     if (c->n >= ADCGS_POINTS_LEAST && !moving)
         return ADCGS_OK;
     matched_points(c, found, all, config->params.spans, adcgs_half_lifetime(config, found));
-    if (given)
+    if (given || (s->scene->splats && c->n >= ADCGS_POINTS_LEAST)) /* splats show all that there is */
         return ADCGS_OK;
     random_points(c, s, found, config->start_anchors, config->seed);
     return c->n ? ADCGS_OK
@@ -293,6 +294,13 @@ static void set_lives(adcgs_stereo *found, const adcgs_train_config *config)
     }
 }
 
+/** Motion is known where the scene is one of splats over time. */
+static adcgs_status applies(const adcgs_scene *scene, int *out, adcgs_error *error)
+{
+    *out = adcgs_splat_motion_applies(scene);
+    return *out ? ADCGS_OK : adcgs_stereo_applies(scene, out, error);
+}
+
 adcgs_status adcgs_start_match(adcgs_stereo *found, unsigned how, const adcgs_scene *scene, adcgs_train_config *config,
                                adcgs_pool *pool, adcgs_error *error)
 {
@@ -300,8 +308,8 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, unsigned how, const adcgs_sc
     const int given = has_points(scene);
     adcgs_stereo_options options = {.still = 0};
     if (config->matching_frames && (!given || config->params.spans)) {
-        ADCGS_TRY(adcgs_stereo_applies(scene, &matched, error));
-        ADCGS_TRY(adcgs_stereo_applies(scene->whole ? scene->whole : scene, &whole, error));
+        ADCGS_TRY(applies(scene, &matched, error));
+        ADCGS_TRY(applies(scene->whole ? scene->whole : scene, &whole, error));
     }
     if (matched || given)
         adcgs_resolve_start(config);
@@ -312,7 +320,8 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, unsigned how, const adcgs_sc
         options.bodies = config->params.spans ? config->params.bodies : 0;
         options.moving = config->params.spans ? MOVING_MOST : (uint32_t)(MOVING_SHARE * options.still);
         ADCGS_TRY(adcgs_scene_frame(scene, options.origin, &options.scale, error));
-        ADCGS_TRY(adcgs_stereo_find(found, scene, &options, pool, error));
+        ADCGS_TRY(adcgs_splat_motion_applies(scene) ? adcgs_splat_motion_find(found, scene, &options, error)
+                                                    : adcgs_stereo_find(found, scene, &options, pool, error));
     }
     set_lives(found, config);
     ADCGS_TRY(adcgs_stereo_check_motion(&moves, found, error));

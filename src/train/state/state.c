@@ -111,7 +111,7 @@ static adcgs_status find_facts(adcgs_scene_facts *facts, const adcgs_scene *scen
     adcgs_free(NULL, of);
     *facts = (adcgs_scene_facts){.times = scene->n_times,
                                  .is_shared = scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * scene->n_times,
-                                 .is_sparse = (uint64_t)2 * n < (uint64_t)cameras * whole->n_times};
+                                 .is_sparse = !scene->splats && (uint64_t)2 * n < (uint64_t)cameras * whole->n_times};
     return status;
 }
 
