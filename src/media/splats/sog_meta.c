@@ -41,8 +41,8 @@ static adcgs_status read_numbers(const reader *r, const char *object, const char
 }
 
 /**
- * Read a codebook of at most 256 numbers; further bytes have none. Some programs wrote null as the first number: it then is one
- * mean step below the second.
+ * Read a codebook of at most 256 numbers; further bytes have none. Some programs wrote null as the first number. It then is about
+ * one mean step below the second, as PlayCanvas' engine reads it.
  */
 static adcgs_status read_book(const reader *r, const char *object, double book[ADCGS_SOG_BYTES])
 {

@@ -125,6 +125,9 @@ static void test_names_of_splats(void **state)
          ADCGS_KIND_OTHER},
         {"a.sog", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x0c\0\0\0means_l.webp"), "splats (SOG)",
          ADCGS_KIND_SPLATS},
+        {"a", BYTES("PK\3\4\x14 scales.webp"), "splats (SOG)", ADCGS_KIND_SPLATS},
+        {"meta.json", BYTES("\xef\xbb\xbf {\"version\":2,\"means\":{\"mins\":[0,0,0],\"files\":[\"a.webp\",\"b.webp\"]"),
+         "splats (meta.json of SOG)", ADCGS_KIND_SPLATS},
         {"a", BYTES("PK\3\4 params.npy"), "arrays of NumPy (NPZ)", ADCGS_KIND_OTHER},
         {"a", BYTES("LASF"), "a point cloud (LAS or LAZ)", ADCGS_KIND_POINTS},
     };
@@ -177,6 +180,7 @@ static void test_unmarked(void **state)
         memcpy(splat + 32 * i + 24, "\x80\x80\x80\xff\xff\x80\x80\x80", 8);
     }
     assert_string_equal(kind_of("a", (char *)splat, sizeof splat, sizeof splat)->name, "splats (.splat)");
+    assert_true(kind_of("a", (char *)splat, sizeof splat, sizeof splat)->is_read);
     assert_int_equal(kind_of("a", (char *)splat, sizeof splat, sizeof splat + 1)->class, ADCGS_KIND_UNKNOWN);
     splat[32 * 9 + 28] = 0x80; /* no quaternion */
     assert_int_equal(kind_of("a", (char *)splat, sizeof splat, sizeof splat)->class, ADCGS_KIND_UNKNOWN);
@@ -185,6 +189,7 @@ static void test_unmarked(void **state)
     assert_int_equal(kind_of("a", (char *)splat, sizeof splat, sizeof splat)->class, ADCGS_KIND_UNKNOWN);
     ksplat[16] = 4;
     assert_string_equal(kind_of("a", (char *)ksplat, 100, sizeof ksplat)->name, "splats (.ksplat)");
+    assert_true(kind_of("a", (char *)ksplat, 100, sizeof ksplat)->is_read);
     assert_int_equal(kind_of("a", (char *)ksplat, 100, 5000)->class, ADCGS_KIND_UNKNOWN);
 }
 

@@ -70,8 +70,8 @@ static void expect_bad(const char *text, size_t bytes, const char *what)
 
 static void test_damage(void **state)
 {
-    expect_bad(TEXT(""), "neither");
-    expect_bad(TEXT("ply"), "neither");
+    expect_bad(TEXT(""), "no points, expected PLY");
+    expect_bad(TEXT("ply"), "no points, expected PLY");
     expect_bad(TEXT("ply\n"), "ends early");
     expect_bad(TEXT("ply\nformat ascii 2.0\n"), "line 2");
     expect_bad(TEXT("ply\nformat middle_endian 1.0\n"), "unknown format");
