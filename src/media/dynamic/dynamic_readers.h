@@ -9,13 +9,15 @@ extern const adcgs_dynamic_reader adcgs_dynamic_stg;
 extern const adcgs_dynamic_reader adcgs_dynamic_ftgs;
 extern const adcgs_dynamic_reader adcgs_dynamic_splatv;
 extern const adcgs_dynamic_reader adcgs_dynamic_d3dg;
+extern const adcgs_dynamic_reader adcgs_dynamic_tsog;
 
 /* clang-format off */
 #define ADCGS_DYNAMIC_READERS \
     &adcgs_dynamic_stg, \
     &adcgs_dynamic_ftgs, \
     &adcgs_dynamic_splatv, \
-    &adcgs_dynamic_d3dg,
+    &adcgs_dynamic_d3dg, \
+    &adcgs_dynamic_tsog,
 /* clang-format on */
 
 #endif

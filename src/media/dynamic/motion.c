@@ -7,16 +7,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-adcgs_status adcgs_motion_alloc(adcgs_motion *m, uint64_t n, int orders, int flags, const char *path, adcgs_error *error)
+adcgs_status adcgs_motion_take(adcgs_motion *m, adcgs_splats *base, int orders, int flags, const char *path, adcgs_error *error)
 {
-    *m = (adcgs_motion){0};
-    ADCGS_TRY(adcgs_splats_alloc(&m->base, n, path, error));
-    const size_t rows = m->base.n;
+    const size_t rows = base->n;
     const size_t arrays = 2 + 3 * (size_t)orders + (flags & ADCGS_MOTION_TURNS ? 4 : 0) + (flags & ADCGS_MOTION_WINDOWS ? 2 : 0);
-    float *at = m->block = calloc(arrays * rows + !rows, sizeof *m->block);
-    if (!m->block) {
+    float *at = calloc(arrays * rows + !rows, sizeof *m->block);
+    *m = (adcgs_motion){.base = *base, .block = at};
+    *base = (adcgs_splats){0};
+    if (!at) {
         adcgs_motion_free(m);
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %llu splats", path, (unsigned long long)n);
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %zu splats", path, rows);
     }
     m->centre = at, at += rows;
     m->sigma = at, at += rows;
@@ -33,6 +33,14 @@ adcgs_status adcgs_motion_alloc(adcgs_motion *m, uint64_t n, int orders, int fla
             m->begin[i] = -INFINITY, m->end[i] = INFINITY;
     }
     return ADCGS_OK;
+}
+
+adcgs_status adcgs_motion_alloc(adcgs_motion *m, uint64_t n, int orders, int flags, const char *path, adcgs_error *error)
+{
+    adcgs_splats base;
+    *m = (adcgs_motion){0};
+    ADCGS_TRY(adcgs_splats_alloc(&base, n, path, error));
+    return adcgs_motion_take(m, &base, orders, flags, path, error);
 }
 
 void adcgs_motion_free(adcgs_motion *m)

@@ -33,6 +33,9 @@ enum { ADCGS_MOTION_TURNS = 1, ADCGS_MOTION_WINDOWS = 2 };
  * ADCGS_MOTION_TURNS, ADCGS_MOTION_WINDOWS (-INFINITY to INFINITY).
  */
 adcgs_status adcgs_motion_alloc(adcgs_motion *motion, uint64_t n, int orders, int flags, const char *path, adcgs_error *error);
+/** The same for splats that exist: the motion takes them, which empties *base, also on failure. */
+adcgs_status adcgs_motion_take(adcgs_motion *motion, adcgs_splats *base, int orders, int flags, const char *path,
+                               adcgs_error *error);
 void adcgs_motion_free(adcgs_motion *motion);
 /** Change a motion that is in a unit of time of its own, of so many seconds, to seconds. */
 void adcgs_motion_stretch(adcgs_motion *motion, double seconds);

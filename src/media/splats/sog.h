@@ -16,6 +16,8 @@
 
 #include <stdio.h>
 
+struct adcgs_zip_archive;
+
 /**
  * adcgs_splats_parse() of a ZIP archive. ADCGS_ERR_UNSUPPORTED for another version than 1 and 2, for splats that change with time
  * (TSOG), and in a build without libwebp. On failure the caller clears *out.
@@ -23,6 +25,9 @@
 adcgs_status adcgs_sog_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 /** The same for the text of a meta.json at path. The images that it names are read from the same folder. */
 adcgs_status adcgs_sog_parse_meta(adcgs_splats *out, const uint8_t *text, size_t bytes, const char *path, adcgs_error *error);
+/** The splats of a TSOG (media/dynamic/tsog.c) without their times, in the order of the pixels. text: its meta.json. */
+adcgs_status adcgs_sog_parse_timeless(adcgs_splats *out, const struct adcgs_zip_archive *zip, const uint8_t *text, size_t bytes,
+                                      adcgs_error *error);
 /**
  * Write version 2 to an open file; the caller checks it for errors. The splats are sorted along a Morton curve. The style's
  * comment is the generator's name. ADCGS_ERR_UNSUPPORTED for zero splats, and in a build without libwebp.

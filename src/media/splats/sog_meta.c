@@ -8,13 +8,14 @@
 #include <math.h>
 #include <stdio.h>
 
-#define LAST 255.0 /* largest value of a byte; definition */
+#define LAST 255.0  /* largest value of a byte; definition */
+#define OVER_TIME 4 /* version of TSOG; definition */
 
 typedef struct reader {
     const char *path;
     adcgs_error *error;
     json_t *root;
-    int version;
+    int version; /**< 1, or 2 and versions like it */
     adcgs_sog_meta *out;
 } reader;
 
@@ -41,8 +42,8 @@ static adcgs_status read_numbers(const reader *r, const char *object, const char
 }
 
 /**
- * Read a codebook of at most 256 numbers; further bytes have none. Some programs wrote null as the first number. It then is about
- * one mean step below the second, as PlayCanvas' engine reads it.
+ * Read a codebook of at most 256 numbers; further bytes have none. Some programs wrote null as the first number: it then is one
+ * mean step below the second.
  */
 static adcgs_status read_book(const reader *r, const char *object, double book[ADCGS_SOG_BYTES])
 {
@@ -91,19 +92,18 @@ static adcgs_status read_names(const reader *r, const char *object, adcgs_sog_im
 
 /* ---- Members ---- */
 
-static adcgs_status read_version(reader *r)
+static adcgs_status read_version(reader *r, int over_time)
 {
     json_t *const version = json_object_get(r->root, "version");
-    if (json_object_get(r->root, "timeline") || json_object_get(r->root, "temporal"))
-        return adcgs_fail(r->error, ADCGS_ERR_UNSUPPORTED, "%s: splats that change with time (TSOG), expected static ones",
-                          r->path);
+    if (!over_time && (json_object_get(r->root, "timeline") || json_object_get(r->root, "temporal")))
+        return adcgs_fail(r->error, ADCGS_ERR_UNSUPPORTED, "%s: splats over time (TSOG), expected static ones", r->path);
     if (version && !json_is_integer(version))
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: meta.json: version: expected an integer", r->path);
     const json_int_t number = version ? json_integer_value(version) : 1;
-    if (number != 1 && number != 2)
-        return adcgs_fail(r->error, ADCGS_ERR_UNSUPPORTED, "%s: SOG of version %lld, expected 1 or 2", r->path,
-                          (long long)number);
-    r->version = (int)number;
+    if (over_time ? number != OVER_TIME : number != 1 && number != 2)
+        return adcgs_fail(r->error, ADCGS_ERR_UNSUPPORTED, "%s: %s of version %lld, expected %s", r->path,
+                          over_time ? "TSOG" : "SOG", (long long)number, over_time ? "4" : "1 or 2");
+    r->version = over_time ? 2 : (int)number;
     return ADCGS_OK;
 }
 
@@ -155,10 +155,10 @@ static adcgs_status read_colours(const reader *r)
     return ADCGS_OK;
 }
 
-static adcgs_status read_members(reader *r)
+static adcgs_status read_members(reader *r, int over_time)
 {
     adcgs_sog_meta *const m = r->out;
-    ADCGS_TRY(read_version(r));
+    ADCGS_TRY(read_version(r, over_time));
     ADCGS_TRY(read_count(r));
     m->antialiased = json_is_true(json_object_get(r->root, "antialias"));
     ADCGS_TRY(read_numbers(r, "means", "mins", m->low, 3));
@@ -174,7 +174,8 @@ static adcgs_status read_members(reader *r)
     return read_harmonics(r);
 }
 
-adcgs_status adcgs_sog_meta_parse(adcgs_sog_meta *out, const uint8_t *text, size_t bytes, const char *path, adcgs_error *error)
+adcgs_status adcgs_sog_meta_parse(adcgs_sog_meta *out, const uint8_t *text, size_t bytes, int over_time, const char *path,
+                                  adcgs_error *error)
 {
     reader r = {.path = path, .error = error, .out = out};
     json_error_t where;
@@ -182,7 +183,7 @@ adcgs_status adcgs_sog_meta_parse(adcgs_sog_meta *out, const uint8_t *text, size
     r.root = json_loadb((const char *)text, bytes, JSON_REJECT_DUPLICATES, &where);
     if (!r.root)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: meta.json: line %d: malformed JSON: %s", path, where.line, where.text);
-    const adcgs_status status = read_members(&r);
+    const adcgs_status status = read_members(&r, over_time);
     json_decref(r.root);
     return status;
 }

@@ -35,9 +35,11 @@ typedef struct adcgs_sog_meta {
 } adcgs_sog_meta;
 
 /**
- * Parse meta.json. ADCGS_ERR_UNSUPPORTED for another version, and for splats that change with time (TSOG). ADCGS_ERR_DATA, naming
- * the member, for a missing one, and for a name of an image that lies in another folder.
+ * Parse meta.json; over_time: of TSOG, whose splats are stored as in version 2. ADCGS_ERR_UNSUPPORTED for another version, and
+ * for splats over time unless they are expected. ADCGS_ERR_DATA, naming the member, for a missing one, and for a name of an image
+ * that lies in another folder.
  */
-adcgs_status adcgs_sog_meta_parse(adcgs_sog_meta *out, const uint8_t *text, size_t bytes, const char *path, adcgs_error *error);
+adcgs_status adcgs_sog_meta_parse(adcgs_sog_meta *out, const uint8_t *text, size_t bytes, int over_time, const char *path,
+                                  adcgs_error *error);
 
 #endif

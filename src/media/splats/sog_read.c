@@ -189,12 +189,19 @@ static adcgs_status take_harmonics(reader *r)
     return ADCGS_OK;
 }
 
-static adcgs_status read_all(reader *r, const uint8_t *text, size_t bytes)
+static adcgs_status read_images(reader *r)
 {
-    ADCGS_TRY(adcgs_sog_meta_parse(&r->meta, text, bytes, r->path, r->error));
     ADCGS_TRY(load_images(r));
     ADCGS_TRY(take_splats(r));
     return r->meta.has_harmonics ? take_harmonics(r) : ADCGS_OK;
+}
+
+static adcgs_status read_all(reader *r, const uint8_t *text, size_t bytes, int over_time)
+{
+    ADCGS_TRY(adcgs_sog_meta_parse(&r->meta, text, bytes, over_time, r->path, r->error));
+    const adcgs_status status = read_images(r);
+    clear_images(r);
+    return status;
 }
 
 adcgs_status adcgs_sog_parse_meta(adcgs_splats *out, const uint8_t *text, size_t bytes, const char *path, adcgs_error *error)
@@ -203,9 +210,14 @@ adcgs_status adcgs_sog_parse_meta(adcgs_splats *out, const uint8_t *text, size_t
     if (bytes > META_MAX)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %zu bytes, expected meta.json of at most %llu", path, bytes,
                           (unsigned long long)META_MAX);
-    const adcgs_status status = read_all(&r, text, bytes);
-    clear_images(&r);
-    return status;
+    return read_all(&r, text, bytes, 0);
+}
+
+adcgs_status adcgs_sog_parse_timeless(adcgs_splats *out, const adcgs_zip_archive *zip, const uint8_t *text, size_t bytes,
+                                      adcgs_error *error)
+{
+    reader r = {.path = zip->path, .error = error, .zip = zip, .out = out};
+    return read_all(&r, text, bytes, 1);
 }
 
 adcgs_status adcgs_sog_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
@@ -218,8 +230,7 @@ adcgs_status adcgs_sog_parse(adcgs_splats *out, const uint8_t *data, size_t byte
     if (!adcgs_zip_has(&zip, "meta.json"))
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: an archive without meta.json, expected splats (SOG)", path);
     ADCGS_TRY(adcgs_zip_unpack(&text, &text_bytes, &zip, "meta.json", META_MAX, error));
-    const adcgs_status status = read_all(&r, text, text_bytes);
+    const adcgs_status status = read_all(&r, text, text_bytes, 0);
     free(text);
-    clear_images(&r);
     return status;
 }
