@@ -16,13 +16,16 @@ const char *const adcgs_fuzz_seeds[] = {"tests/fuzz/seeds/dynamic", "tests/fuzz/
 
 /* ---- Archives ---- */
 
-/* Origin: definition (ZIP, APPNOTE.TXT 4.3.7, 4.3.12). */
+/* Origin: definition (ZIP, APPNOTE.TXT 4.3.7, 4.3.12, 4.3.16). */
 #define LOCAL 30   /* bytes of a file's header, without its name */
 #define CENTRAL 46 /* bytes of an entry of the directory, without its name */
+#define END 22     /* bytes of the record after the directory, without a comment */
 
-/** Corrects the checksums of stored files, which else would hide faults of the readers from the engine. */
+/** Corrects the checksums of stored files and the length of the comment, which else would hide faults of the readers. */
 static void repair_archive(uint8_t *data, size_t size)
 {
+    if (size >= END && !memcmp(data + size - END, "PK\5\6", 4))
+        adcgs_store_le16(data + size - 2, 0);
 #if defined(HAVE_SPZ) || defined(HAVE_SOG)
     for (size_t at = 0; size >= CENTRAL && at <= size - CENTRAL; at++) {
         uint8_t *const entry = data + at;

@@ -257,7 +257,7 @@ static void test_faults(void **state)
     } cases[] = {
         {2, 0, "\"version\":2", "\"version\":3", ADCGS_ERR_UNSUPPORTED, "SOG of version 3, expected 1 or 2"},
         {2, 0, "\"version\":2", "\"version\":\"2\"", ADCGS_ERR_DATA, "version: expected an integer"},
-        {2, 0, "\"count\":5", "\"timeline\":{}", ADCGS_ERR_UNSUPPORTED, "change with time (TSOG)"},
+        {2, 0, "\"count\":5", "\"timeline\":{}", ADCGS_ERR_UNSUPPORTED, "over time (TSOG)"},
         {2, 0, "\"count\":5", "\"count\":0", ADCGS_ERR_DATA, "count: expected 1 to 16777216 splats"},
         {2, 0, "\"count\":5", "\"count\":7", ADCGS_ERR_DATA, "means_l.webp: 3x2 pixels, expected one for each of 7 splats"},
         {2, 0, "\"count\":5", "\"count\":16777216", ADCGS_ERR_DATA, "16777216 splats, but only"},
