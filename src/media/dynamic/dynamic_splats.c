@@ -14,7 +14,6 @@
 #include <stdlib.h>
 
 #define FILE_MAX ((uint64_t)8 << 30) /* bytes of a file that is read; chosen by hand, not measured */
-#define ROUNDING 5e-7                /* seconds: a time this close before a frame is that frame's; chosen by hand, not measured */
 
 static const adcgs_dynamic_reader *const readers[] = {ADCGS_DYNAMIC_READERS};
 
@@ -46,12 +45,6 @@ int adcgs_dynamic_is(const char *path)
     fclose(file);
     free(data);
     return found;
-}
-
-void adcgs_dynamic_set_clock(adcgs_dynamic *m, adcgs_fps rate, uint32_t frames)
-{
-    m->rate = m->options.rate.den ? m->options.rate : rate.den ? rate : (adcgs_fps){ADCGS_DYNAMIC_RATE, 1};
-    m->frames = m->options.frames ? m->options.frames : frames ? frames : ADCGS_DYNAMIC_FRAMES;
 }
 
 static void forget(adcgs_dynamic *m)
@@ -112,12 +105,6 @@ double adcgs_dynamic_duration(const adcgs_dynamic *m)
     return (m->frames - 1.0) * m->rate.den / m->rate.num;
 }
 
-uint32_t adcgs_dynamic_frame(const adcgs_dynamic *m, double seconds)
-{
-    const double at = floor((seconds + ROUNDING) * m->rate.num / m->rate.den);
-    return at >= m->frames - 1.0 ? m->frames - 1 : at > 0.0 ? (uint32_t)at : 0;
-}
-
 adcgs_status adcgs_dynamic_at(const adcgs_dynamic *m, double seconds, adcgs_splats *out, adcgs_error *error)
 {
     *out = (adcgs_splats){0};
@@ -137,17 +124,4 @@ void adcgs_dynamic_free(adcgs_dynamic **dynamic)
         free(m);
     }
     *dynamic = NULL;
-}
-
-adcgs_status adcgs_dynamic_motion_at(const adcgs_dynamic *m, double seconds, adcgs_splats *out, adcgs_error *error)
-{
-    return adcgs_motion_at(m->state, seconds, out, m->path, error);
-}
-
-void adcgs_dynamic_motion_close(adcgs_dynamic *m)
-{
-    if (m->state)
-        adcgs_motion_free(m->state);
-    free(m->state);
-    m->state = NULL;
 }

@@ -25,6 +25,8 @@ static void test_continuous(void **state)
         adcgs_dynamic_free(&d);
     }
     assert_true(adcgs_dynamic_is(real_data(CONTINUOUS)));
+    assert_true(adcgs_dynamic_is(real_data(DISCRETE))); /* over 64 KiB: the directory is beyond the first bytes */
+    assert_false(adcgs_dynamic_is(real_data(SAMPLES "sog/demo_t0.5.sog")));
 }
 
 /** Splats of each of eight frames; a frame begins at i / 10 seconds. */
