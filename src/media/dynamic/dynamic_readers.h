@@ -10,6 +10,7 @@ extern const adcgs_dynamic_reader adcgs_dynamic_ftgs;
 extern const adcgs_dynamic_reader adcgs_dynamic_splatv;
 extern const adcgs_dynamic_reader adcgs_dynamic_d3dg;
 extern const adcgs_dynamic_reader adcgs_dynamic_tsog;
+extern const adcgs_dynamic_reader adcgs_dynamic_splat4d;
 
 /* clang-format off */
 #define ADCGS_DYNAMIC_READERS \
@@ -17,7 +18,8 @@ extern const adcgs_dynamic_reader adcgs_dynamic_tsog;
     &adcgs_dynamic_ftgs, \
     &adcgs_dynamic_splatv, \
     &adcgs_dynamic_d3dg, \
-    &adcgs_dynamic_tsog,
+    &adcgs_dynamic_tsog, \
+    &adcgs_dynamic_splat4d,
 /* clang-format on */
 
 #endif
