@@ -11,6 +11,7 @@ extern const adcgs_dynamic_reader adcgs_dynamic_splatv;
 extern const adcgs_dynamic_reader adcgs_dynamic_d3dg;
 extern const adcgs_dynamic_reader adcgs_dynamic_tsog;
 extern const adcgs_dynamic_reader adcgs_dynamic_splat4d;
+extern const adcgs_dynamic_reader adcgs_dynamic_fourdgs;
 
 /* clang-format off */
 #define ADCGS_DYNAMIC_READERS \
@@ -19,7 +20,8 @@ extern const adcgs_dynamic_reader adcgs_dynamic_splat4d;
     &adcgs_dynamic_splatv, \
     &adcgs_dynamic_d3dg, \
     &adcgs_dynamic_tsog, \
-    &adcgs_dynamic_splat4d,
+    &adcgs_dynamic_splat4d, \
+    &adcgs_dynamic_fourdgs,
 /* clang-format on */
 
 #endif
