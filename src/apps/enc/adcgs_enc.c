@@ -303,8 +303,8 @@ static const adcgs_cli program = {
     .operands = "SCENE",
     .summary = "Train a dynamic scene from posed images and write it to one file.",
     .details = "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D, COLMAP or\n"
-               "Dynamic 3D Gaussians, a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB), whose\n"
-               "views are rendered. Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or\n"
+               "Dynamic 3D Gaussians, a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB, SOG,\n"
+               ".splat, .ksplat), whose views are rendered. Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or\n"
                "millions: 20k, 2M.",
     .min_operands = 0,
     .max_operands = OPERANDS_MAX, /* one is expected; the message depends on the others */

@@ -62,7 +62,7 @@ static void add_scene_options(adcgs_option_table *out, adcgs_enc_options *o)
         {"fps", 0, ADCGS_OPTION_STRING, &o->fps, 0, 0, "N[/D]",
          "rate of the selected frames, per second (default: the\nscene's, else 30)", NULL, NULL},
         {"points", 0, ADCGS_OPTION_FILE, &o->points, 0, 0, "FILE",
-         "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL},
+         "initial points (PLY, NPY, Draco or splats) instead of the\nscene's or random ones", NULL, NULL},
     };
     adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }

@@ -82,7 +82,7 @@ static void test_bad(void **state)
     expect_bad(ADCGS_ERR_DATA, "ends early");
     put_text("t.ply", "ply\nformat binary_little_endian 1.0\nelement chunk 1\nproperty float min_x\nelement vertex 1\n"
                       "property uint packed_position\nproperty uint packed_rotation\nend_header\n............");
-    expect_bad(ADCGS_ERR_UNSUPPORTED, "a compressed PLY");
+    expect_bad(ADCGS_ERR_DATA, "compressed splats without the property min_y of the element chunk");
     expect_error(adcgs_splats_read(&s, in("absent.ply"), &error), ADCGS_ERR_IO, "absent.ply", "No such file");
     expect_error(adcgs_splats_alloc(&s, ADCGS_SPLATS_MAX + 1ull, "many", &error), ADCGS_ERR_DATA, "many", "at most 16777216");
 }
