@@ -120,4 +120,30 @@ static inline void splat_transform(const char *from, const char *options, const 
         fail_msg("%s", line);
 }
 
+/** PlayCanvas' program reads a file of the folder, with harmonics, as we do. */
+static inline void expect_as_splat_transform(const char *name)
+{
+    adcgs_splats s, theirs;
+    splat_transform(name, "", "theirs.ply");
+    expect_good(adcgs_splats_read(&s, in(name), &error));
+    expect_good(adcgs_splats_read(&theirs, in("theirs.ply"), &error));
+    assert_true(s.n == theirs.n && s.degree == theirs.degree && s.degree > 0);
+    for (uint32_t i = 0; i < s.n; i++) {
+        double dot = 0.0;
+        near(theirs.opacity[i], s.opacity[i], 1e-5, 2e-6);
+        for (int a = 0; a < 3; a++) {
+            near(theirs.mean[a][i], s.mean[a][i], 1e-5, 1e-6);
+            near(theirs.scale[a][i], s.scale[a][i], 1e-5, 0.0);
+            near(theirs.colour[a][i], s.colour[a][i], 1e-5, 1e-6);
+        }
+        for (int a = 0; a < 4; a++)
+            dot += (double)theirs.rotation[a][i] * (double)s.rotation[a][i];
+        assert_true(fabs(dot) > 0.99999);
+    }
+    for (size_t k = 0; k < s.n * 3 * (size_t)((s.degree + 1) * (s.degree + 1) - 1); k++)
+        near(theirs.harmonics[k], s.harmonics[k], 0.0, 1e-5);
+    adcgs_splats_free(&s);
+    adcgs_splats_free(&theirs);
+}
+
 #endif

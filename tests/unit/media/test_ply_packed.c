@@ -153,13 +153,22 @@ static void test_packed_faults(void **state)
     }
 }
 
+static void test_splat_transform(void **state)
+{
+    static made_file b;
+    need_splat_transform();
+    for (int degree = 1; degree <= 3; degree++) {
+        make_packed(&b, 1, degree, "element chunk 1");
+        put_bytes("p.compressed.ply", b.data, b.n);
+        expect_as_splat_transform("p.compressed.ply");
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_packed_samples),
-        cmocka_unit_test(test_biker),
-        cmocka_unit_test(test_packed_numbers),
-        cmocka_unit_test(test_packed_faults),
+        cmocka_unit_test(test_packed_samples), cmocka_unit_test(test_biker),           cmocka_unit_test(test_packed_numbers),
+        cmocka_unit_test(test_packed_faults),  cmocka_unit_test(test_splat_transform),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -317,6 +317,15 @@ static void test_other_files(void **state)
     expect_error(adcgs_splats_read(&s, in("meta.json"), &error), ADCGS_ERR_DATA, "means_l.webp: WebP that is lossy", "lossless");
 }
 
+static void test_splat_transform(void **state)
+{
+    need_splat_transform();
+    for (int degree = 1; degree <= 3; degree++) {
+        make_sog(2, degree, NULL, NULL, -1);
+        expect_as_splat_transform("s.sog");
+    }
+}
+
 static void test_damage(void **state)
 {
     size_t bytes;
@@ -331,8 +340,9 @@ static void test_damage(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_sample),      cmocka_unit_test(test_versions),
-        cmocka_unit_test(test_faults),     cmocka_unit_test(test_other_files), cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_round_trip),      cmocka_unit_test(test_sample),      cmocka_unit_test(test_versions),
+        cmocka_unit_test(test_faults),          cmocka_unit_test(test_other_files), cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_splat_transform),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -239,6 +239,17 @@ static void test_ksplat_faults(void **state)
     }
 }
 
+static void test_splat_transform(void **state)
+{
+    static made_file b;
+    need_splat_transform();
+    for (int level = 0; level <= 2; level++) {
+        make_ksplat(&b, level, 2);
+        put_bytes("t.ksplat", b.data, b.n);
+        expect_as_splat_transform("t.ksplat");
+    }
+}
+
 /* ---- Points ---- */
 
 /** Any file of splats also serves as points: their centres and colours. */
@@ -281,10 +292,10 @@ static void test_points(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_splat_samples), cmocka_unit_test(test_splat_numbers), cmocka_unit_test(test_ksplat_sample),
+        cmocka_unit_test(test_splat_samples), cmocka_unit_test(test_splat_numbers),   cmocka_unit_test(test_ksplat_sample),
         cmocka_unit_test(test_ksplat_levels), cmocka_unit_test(test_ksplat_faults),
 
-        cmocka_unit_test(test_points),
+        cmocka_unit_test(test_points),        cmocka_unit_test(test_splat_transform),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
