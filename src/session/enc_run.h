@@ -18,6 +18,7 @@
 typedef struct adcgs_enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *finish, *log, *points, *set, *without, *beginning, *uncompressed;
     const char *preview, *frames, *fps, *plan;
+    int splat_frames, has_splat_frames, is_partial; /**< see adcgs_scene_options */
     double lambda, psnr, time_limit, segment, key, fade, delay, cut;
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, fixed, live, or_whole,
         schedule;

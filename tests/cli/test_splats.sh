@@ -97,9 +97,9 @@ if [ -f .libs/adcgs_draco.so ]; then
 fi
 
 # A file that is not a scene, or not a stream, is rejected with its kind.
-mkdir "$dir/sequence" && cp "$dir/t000.ply" "$dir/t001.ply" "$dir/sequence"
-expect 5 "sequence: a folder of 2 files of splats (t000.ply): sequences" ./adcgs-enc "$dir/sequence" -o "$dir/x.adcgs"
-expect 5 "t000.ply and 1 more files of splats" ./adcgs-enc "$dir/t000.ply" "$dir/t001.ply" -o "$dir/x.adcgs"
+mkdir "$dir/sequence" && cp "$dir/t000.ply" "$dir/sequence/one.ply" && cp "$dir/t001.ply" "$dir/sequence/two.ply"
+expect 5 "sequence: a folder of 2 files of splats (one.ply): for a sequence name them by numbers" ./adcgs-enc "$dir/sequence" -o "$dir/x.adcgs"
+expect 5 "t000.ply and 1 more files of splats: give the folder" ./adcgs-enc "$dir/t000.ply" "$dir/t001.ply" -o "$dir/x.adcgs"
 expect 2 "$dir/t000.ply: one operand too many" ./adcgs-enc "$dir/scene" "$dir/t000.ply" -o "$dir/x.adcgs"
 expect 4 "s.adcgs: an adcgs stream, expected a scene: adcgs-dec" ./adcgs-enc "$s" -o "$dir/x.adcgs"
 expect 4 "s.adcgs: an adcgs stream, expected a scene: adcgs-dec" ./adcgs-sweep "$s" -o "$dir/sweep" -l 0.1

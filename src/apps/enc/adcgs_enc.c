@@ -228,7 +228,10 @@ static adcgs_status open_log(adcgs_enc_context *w, adcgs_error *error)
 static adcgs_status run(adcgs_enc_job *job, adcgs_enc_context *w, int *met, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
-    adcgs_scene_options scene = {.points_path = o->points, .dataset = o->dataset};
+    adcgs_scene_options scene = {.points_path = o->points,
+                                 .dataset = o->dataset,
+                                 .splat_frames = (uint32_t)o->splat_frames,
+                                 .is_partial = o->is_partial};
     adcgs_train_config requested;
     ADCGS_TRY(prepare(job, &requested, w, &scene, error));
     const int follows = job->ranks && job->ranks->rank;
@@ -302,10 +305,11 @@ static const adcgs_cli program = {
     .program = "adcgs-enc",
     .operands = "SCENE",
     .summary = "Train a dynamic scene from posed images and write it to one file.",
-    .details = "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D, COLMAP or\n"
-               "Dynamic 3D Gaussians, a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB, SOG,\n"
-               ".splat, .ksplat), whose views are rendered. Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or\n"
-               "millions: 20k, 2M.",
+    .details =
+        "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D, COLMAP or\n"
+        "Dynamic 3D Gaussians, a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB, SOG,\n"
+        ".splat, .ksplat), whose views are rendered. Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or\n"
+        "millions: 20k, 2M.",
     .min_operands = 0,
     .max_operands = OPERANDS_MAX, /* one is expected; the message depends on the others */
 };

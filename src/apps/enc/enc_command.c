@@ -6,6 +6,7 @@
 
 #include "apps/enc/enc_configure.h"
 #include "base/cpu_detect.h"
+#include "media/dynamic/dynamic_splats.h"
 #include "media/kind.h"
 #include "scene/layouts/open.h"
 #include "session/enc_plan.h"
@@ -61,6 +62,12 @@ static void add_scene_options(adcgs_option_table *out, adcgs_enc_options *o)
          NULL},
         {"fps", 0, ADCGS_OPTION_STRING, &o->fps, 0, 0, "N[/D]",
          "rate of the selected frames, per second (default: the\nscene's, else 30)", NULL, NULL},
+        {"splat-frames", 0, ADCGS_OPTION_INT, &o->splat_frames, 1, ADCGS_DYNAMIC_FRAMES_MAX, "N",
+         "frames of splats over time whose file has times from 0 to 1\n(default: the file's, else 50)", NULL,
+         &o->has_splat_frames},
+        {"partial", 0, ADCGS_OPTION_FLAG, &o->is_partial, 0, 0, NULL,
+         "accept splats over time that cannot be read completely, as\nSpacetimeGaussians' full model without its network", NULL,
+         NULL},
         {"points", 0, ADCGS_OPTION_FILE, &o->points, 0, 0, "FILE",
          "initial points (PLY, NPY, Draco or splats) instead of the\nscene's or random ones", NULL, NULL},
     };
@@ -198,7 +205,9 @@ static const adcgs_option_rule option_rules[] = {
     {"output,beginning", ADCGS_OPTION_APART, NULL},
     {"lambda,size,psnr", ADCGS_OPTION_APART, NULL},
     {"finish", ADCGS_OPTION_EXCLUDES, "resume,beginning,checkpoint,segment,live,time-limit"},
-    {"live", ADCGS_OPTION_EXCLUDES, "size,psnr,beginning,uncompressed,time-limit,frames,fps,checkpoint,dataset,or-whole,fade"},
+    {"live", ADCGS_OPTION_EXCLUDES,
+     "size,psnr,beginning,uncompressed,time-limit,frames,fps,checkpoint,dataset,or-whole,fade,splat-frames,partial"},
+    {"plan", ADCGS_OPTION_EXCLUDES, "splat-frames,partial"},
     {"delay", ADCGS_OPTION_NEEDS, "live"},
     {"key", ADCGS_OPTION_NEEDS, "segment,plan,live"},
     {"fade", ADCGS_OPTION_NEEDS, "segment,plan"},
@@ -231,8 +240,8 @@ static int report_surplus(const adcgs_cli *cli, int n, char **operands)
         splats++;
     if (splats == n)
         return adcgs_cli_error(cli, ADCGS_ERR_UNSUPPORTED,
-                               "%.100s and %d more files of splats: sequences of splats are not read, expected one file",
-                               *operands, n - 1);
+                               "%.100s and %d more files of splats: give the folder of a sequence, or one file", *operands,
+                               n - 1);
     return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: one operand too many; try '%s --help'", operands[1], cli->program);
 }
 

@@ -6,6 +6,7 @@
 #include "apps/eval/eval_report.h"
 #include "base/cpu_detect.h"
 #include "cli/cli.h"
+#include "media/dynamic/dynamic_splats.h"
 #include "media/image/mosaic.h"
 #include "media/kind.h"
 #include "media/operand.h"
@@ -141,10 +142,21 @@ static adcgs_status on_view(void *user, const adcgs_view_score *score, adcgs_err
     return adcgs_interrupted() ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted") : ADCGS_OK;
 }
 
+/** Frames of splats over time whose file does not state them: those that the stream was made from. 0: unknown. */
+static uint32_t splat_frames(const adcgs_info *info)
+{
+    const double n = floor((info->time_end - info->time_start) * info->frame_rate + 0.5) + 1.0;
+    return n >= 1.0 && n <= ADCGS_DYNAMIC_FRAMES_MAX ? (uint32_t)n : 0;
+}
+
 /** Opens the scene with the stream's frame rate, as the step of its times, and the stream's background for alpha. */
 static adcgs_status open_scene(adcgs_scene **scene, const settings *s, const adcgs_info *info, adcgs_error *error)
 {
-    adcgs_scene_options options = {.has_background = !s->as_is, .rate = adcgs_fps_of(info->frame_rate), .dataset = s->dataset};
+    adcgs_scene_options options = {.has_background = !s->as_is,
+                                   .rate = adcgs_fps_of(info->frame_rate),
+                                   .splat_frames = splat_frames(info),
+                                   .is_partial = 1,
+                                   .dataset = s->dataset};
     if (s->frames)
         ADCGS_TRY(adcgs_frames_parse(&options.frames, s->frames, error));
     memcpy(options.background, info->background, sizeof options.background);

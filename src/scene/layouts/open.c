@@ -179,7 +179,7 @@ static int is_splats(const char *name)
     return 0;
 }
 
-/** Refuses a folder without cameras that contains files of splats, one for each timestamp, as some players take them. */
+/** Refuses a folder without cameras that contains files of splats without numbers. */
 static adcgs_status refuse_sequence(const char *folder, adcgs_error *error)
 {
     adcgs_listing listing;
@@ -193,7 +193,8 @@ static adcgs_status refuse_sequence(const char *folder, adcgs_error *error)
         status =
             adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: a folder of %zu files of splats (%.60s): %s", folder, listing.n,
                        listing.names[0],
-                       listing.n > 1 ? "sequences of splats are not supported, give one of the files" : "give the file itself");
+                       listing.n > 1 ? "for a sequence name them by numbers (frame0.ply, frame1.ply, ...), or give one of them"
+                                     : "give the file itself");
     free(path);
     adcgs_listing_free(&listing);
     return status;

@@ -12,7 +12,8 @@
  * - a folder with a sparse model of COLMAP, see colmap.h.
  * - a folder with train_meta.json (Dynamic 3D Gaussians' Panoptic benchmark), or that file itself, see panoptic.h.
  * - a JSON file with the field adcgs_scene, see scene_file.h.
- * - a PLY file of splats: a static scene, whose views are rendered from them, see splat_file.h.
+ * - a file of splats: a static scene, whose views are rendered from them, see splat_file.h.
+ * - splats over time, as a file or as a folder of numbered files: a dynamic scene, the same.
  */
 #ifndef ADCGS_SCENE_LAYOUTS_OPEN_H
 #define ADCGS_SCENE_LAYOUTS_OPEN_H
@@ -28,7 +29,7 @@ typedef enum adcgs_dataset {
     ADCGS_DATASET_LLFF,
     ADCGS_DATASET_COLMAP,
     ADCGS_DATASET_ADCGS,  /**< the scene file */
-    ADCGS_DATASET_SPLATS, /**< a PLY file of splats */
+    ADCGS_DATASET_SPLATS, /**< splats, static or over time */
     ADCGS_DATASET_PANOPTIC,
     ADCGS_DATASETS
 } adcgs_dataset;
@@ -51,7 +52,7 @@ typedef struct adcgs_scene_options {
 } adcgs_scene_options;
 
 /**
- * Opens a scene folder, its JSON file of transforms, a scene file, or a PLY file of splats. Times in [0,1] of the layout become
+ * Opens a scene folder, its JSON file of transforms, a scene file, or splats. Times in [0,1] of the layout become
  * seconds: t times the intervals between frames (frames.h), over the rate. The near plane is half the near bound. Without a
  * bound it is a hundredth of a distance: the median distance of the training cameras from the centre of their views, or
  * adcgs_scene_extent() if all cameras are in one place. No length is absolute: a scene in other units is the same scene.

@@ -1,0 +1,50 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# Splats over time as scenes of adcgs-enc and adcgs-eval: a folder of numbered files, with rows that keep their splats and with
+# shuffled rows. Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-enc adcgs-eval adcgs-info adcgs-dec
+
+# frame NUMBER SHUFFLED: a wall of 300 splats that stand, and a ball of 100 that moves 0.08 a frame, as PLY in text.
+frame()
+{
+    printf 'ply\nformat ascii 1.0\nelement vertex 400\n'
+    printf 'property float %s\n' x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3
+    printf 'end_header\n'
+    awk -v frame="$1" 'BEGIN {
+        for (i = 0; i < 300; i++)
+            print i % 20 / 10 - 1, int(i / 20) / 10 - 0.7, 0.5, (i * 7 % 20) / 10 - 1, (i * 3 % 20) / 10 - 1, 0.3, 3, -2.8, -2.8, -3.5, 1, 0, 0, 0
+        for (i = 0; i < 100; i++) {
+            h = 1 - (2 * i + 1) / 100; r = sqrt(1 - h * h); a = 2.4 * i
+            print 0.25 * r * cos(a) + 0.08 * frame - 0.3, 0.25 * h, 0.25 * r * sin(a), (i % 5) / 2 - 1, 1, (i % 3) - 1, 4, -3.2, -3.2, -3.2, 1, 0, 0, 0
+        } }' | if [ -n "$2" ]; then tac; else cat; fi
+}
+
+mkdir "$dir/rows" "$dir/mixed"
+for i in 0 1 2 3 4 5 6 7; do
+    frame $i "" >"$dir/rows/frame$((2 * i + 7)).ply" # 7, 9, 11, ...: as text, 11 comes before 7
+    frame $i "$([ $((i % 2)) -eq 0 ] || echo mixed)" >"$dir/mixed/f$i.ply"
+done
+
+# code NAME: a short run; the ball has to move in the decoded frames.
+code()
+{
+    expect 0 "" ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --fps 10 --preset draft -n 300 --seed 1 --threads 1 -q
+    expect 0 "8 frames\|0 .. 0.7 s" ./adcgs-info "$dir/$1.adcgs"
+    ./adcgs-eval "$dir/$1.adcgs" "$dir/$1" --metrics dynamic-psnr --json -q >"$dir/$1.json" || bad "$1: not measured"
+    moving=$(sed -n 's/^  "dynamic_psnr": \([-0-9.]*\).*/\1/p' "$dir/$1.json")
+    awk -v psnr="${moving:-0}" 'BEGIN { exit !(psnr > 15) }' || bad "$1: $moving dB of dynamic pixels, expected 15"
+    ./adcgs-info "$dir/$1.adcgs" | grep -q ' static' || bad "$1: the wall is not static"
+}
+code rows
+code mixed
+
+# Faults are named.
+cp "$dir/rows/frame9.ply" "$dir/rows/other1.ply"
+expect 4 "different names before the number" ./adcgs-enc "$dir/rows" -o "$dir/x.adcgs"
+rm "$dir/rows/other1.ply"
+head -c 2000 "$dir/rows/frame13.ply" >"$dir/rows/cut" && mv "$dir/rows/cut" "$dir/rows/frame13.ply"
+expect 4 "frame13.ply" ./adcgs-enc "$dir/rows" -o "$dir/x.adcgs" -n 10 -q
+[ ! -e "$dir/x.adcgs" ] || bad "a stream of damaged splats"
+expect 2 "splat-frames" ./adcgs-enc "$dir/mixed" -o "$dir/x.adcgs" --splat-frames 0
+exit $failed
