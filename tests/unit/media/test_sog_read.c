@@ -332,6 +332,7 @@ static void test_damage(void **state)
     for (int version = 1; version <= 2; version++) {
         make_sog(version, 1, NULL, NULL, -1);
         uint8_t *const data = load_file("s.sog", &bytes);
+        assert_int_equal(read_damaged(data, bytes), ADCGS_OK);
         damage(data, bytes, 800);
         free(data);
     }
