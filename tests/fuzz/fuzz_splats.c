@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Untrusted files of splats, in all formats. Mutations of archives are inside their files, whose checksums are repaired. */
+/** \file Untrusted files of splats, in all formats. Mutations of archives are inside their files; checksums are repaired. */
 #include "config.h" /* for HAVE_SOG */
 
 #include "fuzz.h"

@@ -22,6 +22,7 @@
 #define RADIUS_MIN 1e-9                /* world units */
 #define RADIUS_MAX 1e9                 /* world units */
 
+/* Origin: chosen by hand, not measured. */
 #define REGION_TIMES 5       /* times from whose splats the region follows */
 #define REGION_SPLATS 200000 /* splats that it follows from, at most */
 #define DYNAMIC_VIEWS 640    /* training views of splats over time, of all frames together */

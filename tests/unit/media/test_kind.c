@@ -4,6 +4,7 @@
 
 #include "media/image/image.h"
 #include "media/kind.h"
+#include "media/splats/splats.h"
 #include "scene/layouts/open.h"
 
 #include <math.h>
@@ -331,7 +332,7 @@ static void test_wants(void **state)
     put_bytes("s.splatv", BYTES("Kg\0\0\xe9\0\0\0[{"));
     assert_int_equal(adcgs_kind_check(in("s.splatv"), ADCGS_WANT_SCENE, &error), ADCGS_OK);
     expect_error(adcgs_kind_check(in("s.splatv"), ADCGS_WANT_SPLATS, &error), ADCGS_ERR_UNSUPPORTED, "s.splatv",
-                 "splats over time (.splatv), expected splats (PLY, SPZ, GLB, SOG, .splat or .ksplat): adcgs-enc makes a stream of it");
+                 "splats over time (.splatv), expected splats (" ADCGS_SPLATS_FORMATS "): adcgs-enc makes a stream of it");
     expect_error(adcgs_kind_check(in("s.splatv"), ADCGS_WANT_POINTS, &error), ADCGS_ERR_DATA, "s.splatv", "expected points");
     expect_error(adcgs_kind_check(folder, ADCGS_WANT_STREAM, &error), ADCGS_ERR_DATA, folder,
                  "a folder, expected an adcgs stream");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats in compressed PLY: known values of other programs' files, all features in files made here, errors, damaged files. */
+/** \file Splats in compressed PLY: known values of files of other programs, all features in made files, errors, damage. */
 #include "splat_bytes.h"
 #include "splat_damage.h"
 
