@@ -15,7 +15,7 @@
 #   SEEDS       default 1; figures are means over them
 #   JOBS        runs at once, at most 2 (default 1)
 #   MARGIN      dB (default 0.3)
-#   RATE        dB per doubling of bytes (default 1.4, the least of the rate curves of four scenes in doc/results.md)
+#   RATE        dB per doubling of bytes (default 1.4, the least of the rate curves of four scenes in doc/log/curves.md)
 #   ROBUST_LIST another list
 #   ADCGS_DATA  folder of data sets (default ../shared/data next to the sources)
 set -eu
