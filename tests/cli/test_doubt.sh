@@ -46,7 +46,7 @@ encode few --cameras 2
 grep -q "filmed by 2 cameras: other viewpoints are unreliable" "$dir/few.err" || { bad "nothing of few cameras"; cat "$dir/few.err"; }
 encode four --cameras 4 --frames 48 # more views than are measured; cameras take turns
 grep "filmed by" "$dir/four.err" && bad "four cameras are not seen"
-iterations= more=-q
+iterations=60 more=-q
 encode quiet --spoil wrongpose=30
 [ ! -s "$dir/quiet.err" ] || { bad "--quiet prints messages"; cat "$dir/quiet.err"; }
 [ $failed -eq 0 ]

@@ -10,7 +10,9 @@ tests/cli/fail-nth "$dir" "$dir/report" 1 true || exit $?
 tiny_stream 40
 s=$dir/s.adcgs w=$dir/w
 
-ways='once +'
+both='once +'
+[ -n "${ADCGS_FULL:-}" ] || both=once # a full disk in the full check alone, except for streams
+ways=$both
 none=1000000 most=$none # number of a call that never occurs; number of the last call to test
 
 # faults NAME COMMAND...: the command writes into $w, and its standard output goes to a file there. Standard output and the files
@@ -129,7 +131,7 @@ for extension in tif sgi; do # written from memory, and through a file
         faults "$extension" ./adcgs-dec "$s" --time 0 --camera 0 --size 40x30 -o "$w/x.$extension"
     fi
 done
-ways='once +'
+ways=$both
 faults y4m ./adcgs-dec "$s" --time 0:0.1 -o "$w/x.y4m"
 faults raw ./adcgs-dec "$s" --time 0 -o "$w/x.raw" --float
 if ./adcgs-dec "$s" --time 0 -o "$dir/x.mp4" 2>/dev/null; then

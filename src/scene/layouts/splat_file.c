@@ -4,7 +4,7 @@
 
 #include "scene/layouts/splat_file.h"
 
-#include "geometry/rotation.h"
+#include "scene/layouts/splat_aims.h"
 #include "scene/splat_views.h"
 #include "system/sort_values.h"
 
@@ -16,11 +16,13 @@
 #define OPACITY_LEAST (1.0f / 255.0f)  /* fainter splats are not rendered; definition of the bitstream */
 #define POINT_OPACITY 0.1f             /* least opacity of a splat that becomes a point */
 #define INSIDE 0.95                    /* share of the splats within the radius */
-#define HALF_FIELD 0.4363323129985824  /* radians: 25 degrees, between the optical axis and the middle of an edge of the view */
 #define SHELLS 2                       /* distances of cameras */
-#define GOLDEN_ANGLE 2.399963229728653 /* radians, pi (3 - sqrt(5)); geometry */
 #define RADIUS_MIN 1e-9                /* world units */
 #define RADIUS_MAX 1e9                 /* world units */
+#define GOLDEN_RATIO 0.618033988749895 /* (sqrt(5) - 1) / 2; geometry */
+#define ASIDE 0.18                     /* of the distance: from a selected direction to a view, half the spacing of directions */
+/* Steps of the three coordinates aside; geometry: powers of a root of x^4 = x + 1 (Roberts' sequence). */
+static const double steps[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
 
 /* Origin: chosen by hand, not measured. */
 #define REGION_TIMES 5       /* times from whose splats the region follows */
@@ -74,6 +76,21 @@ static void sample_add(sample *m, const adcgs_splats *s, uint32_t step)
     }
 }
 
+/** Keeps the finer half of the splats. */
+static void keep_fine(sample *m)
+{
+    size_t n = 0;
+    memcpy(m->values, m->size, m->n * sizeof *m->values);
+    adcgs_sort(m->values, m->n);
+    const double most = m->values[m->n / 2];
+    for (size_t i = 0; i < m->n; i++)
+        if (m->size[i] <= most) {
+            memmove(m->x[n], m->x[i], sizeof m->x[i]);
+            m->size[n++] = m->size[i];
+        }
+    m->n = n;
+}
+
 /** Uses medians, so that a few distant splats do not matter. */
 static adcgs_status find_region(adcgs_splat_scene *s, sample *m, const char *path, adcgs_error *error)
 {
@@ -100,46 +117,66 @@ static adcgs_status find_region(adcgs_splat_scene *s, sample *m, const char *pat
     return ADCGS_OK;
 }
 
-/* ---- Cameras ---- */
-
 /**
- * Aims a camera at the centre from `distance` in the direction `out`. y points down in its image, or up if the splats' y axis
- * is up.
+ * Finds the region, and where to look at it from. The region of an object is that of all its splats. Otherwise it is that of the
+ * fine ones, which are where the scene was filmed.
  */
-static void aim(adcgs_camera *camera, const adcgs_splat_scene *s, const double out[3], double distance)
+static adcgs_status find_aims(adcgs_splat_aims *aims, adcgs_splat_scene *s, sample *m, const adcgs_splats *splats,
+                              const char *path, adcgs_error *error)
 {
-    const double up[3] = {0.0, s->splats.axes == ADCGS_SPLATS_Y_UP ? 1.0 : -1.0, 0.0}; /* never parallel to a viewing direction */
-    double eye[3], forward[3];
-    for (int i = 0; i < 3; i++) {
-        eye[i] = s->centre[i] + distance * out[i];
-        forward[i] = -out[i];
+    int is_object;
+    ADCGS_TRY(find_region(s, m, path, error));
+    ADCGS_TRY(adcgs_splat_aims_find(aims, &is_object, s, splats, path, error));
+    if (is_object) {
+        aims->n = 0;
+        return ADCGS_OK;
     }
-    adcgs_look_along(camera->cam_to_world, eye, forward, up);
-    camera->width = camera->height = ADCGS_SPLAT_SCENE_SIZE;
-    camera->cx = camera->cy = 0.5 * ADCGS_SPLAT_SCENE_SIZE;
-    camera->fx = camera->fy = 0.5 * ADCGS_SPLAT_SCENE_SIZE / tan(HALF_FIELD);
+    keep_fine(m);
+    ADCGS_TRY(find_region(s, m, path, error));
+    return adcgs_splat_aims_find(aims, &is_object, s, splats, path, error);
 }
 
-/** Places directions on a spiral of uniform density; each split's spiral is rotated against the others. */
-static void spread(double out[3], uint32_t i, uint32_t n, int split)
+/* ---- Cameras ---- */
+
+/** A number of 0 to 1 for each index; by the golden ratio, evenly spread over successive indices. */
+static double turn_of(uint32_t index, double step)
 {
-    const double height = 1.0 - (2.0 * i + 1.0) / n, angle = GOLDEN_ANGLE * i + 2.0 * split;
-    const double flat = sqrt(1.0 - height * height);
-    out[0] = flat * cos(angle);
-    out[1] = height;
-    out[2] = flat * sin(angle);
+    const double x = step * (index + 1.0);
+    return x - floor(x);
+}
+
+/**
+ * Direction and distance of view `index` among `of`: from all around, or near one of the selected directions. Splits differ.
+ */
+static void choose(double out[3], double *distance, const adcgs_splat_aims *aims, const adcgs_splat_scene *s, int split,
+                   uint32_t index, uint32_t of)
+{
+    static const double shells[SHELLS] = {1.0, 0.7};
+    *distance = shells[index % SHELLS] * adcgs_splat_aims_distance(s);
+    if (!aims->n) {
+        adcgs_splat_aims_spread(out, index, of, 2.0 * split);
+        return;
+    }
+    const uint32_t seed = 7 * index + (uint32_t)split;
+    const double *const near = aims->out[(uint32_t)(turn_of(seed, GOLDEN_RATIO) * aims->n) % aims->n];
+    double length = 0.0;
+    for (int a = 0; a < 3; a++) {
+        out[a] = near[a] + ASIDE * (2.0 * turn_of(seed, steps[a]) - 1.0);
+        length += out[a] * out[a];
+    }
+    for (int a = 0; a < 3; a++)
+        out[a] /= sqrt(length);
 }
 
 /** A view in direction `index` of a spiral of `of` directions, at a distance that alternates. time: 0 to 1. */
-static adcgs_status add_view(adcgs_scene *scene, int split, uint32_t index, uint32_t of, double time, const char *path,
-                             adcgs_error *error)
+static adcgs_status add_view(adcgs_scene *scene, const adcgs_splat_aims *aims, int split, uint32_t index, uint32_t of,
+                             double time, const char *path, adcgs_error *error)
 {
-    static const double shells[SHELLS] = {1.0, 0.7};
     const uint32_t n = scene->n_views[split];
     adcgs_scene_view *const view = &scene->views[split][n];
-    double out[3];
-    spread(out, index, of, split);
-    aim(&view->camera, scene->splats, out, shells[index % SHELLS] * scene->splats->radius / sin(HALF_FIELD));
+    double out[3], distance;
+    choose(out, &distance, aims, scene->splats, split, index, of);
+    adcgs_splat_aims_camera(&view->camera, scene->splats, out, distance, ADCGS_SPLAT_SCENE_SIZE);
     snprintf(view->camera.name, sizeof view->camera.name, "%s_%03u", adcgs_split_name((adcgs_split)split), n);
     view->time = time;
     view->source_time = time * scene->duration;
@@ -156,24 +193,25 @@ static adcgs_status alloc_views(adcgs_scene *scene, int split, uint32_t n, const
     return scene->views[split] ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
 }
 
-static adcgs_status add_static_views(adcgs_scene *scene, const char *path, adcgs_error *error)
+static adcgs_status add_static_views(adcgs_scene *scene, const adcgs_splat_aims *aims, const char *path, adcgs_error *error)
 {
     for (int split = 0; split < ADCGS_SPLITS; split++) {
         ADCGS_TRY(alloc_views(scene, split, n_views[split], path, error));
         for (uint32_t i = 0; i < n_views[split]; i++)
-            ADCGS_TRY(add_view(scene, split, i, n_views[split], 0.0, path, error));
+            ADCGS_TRY(add_view(scene, aims, split, i, n_views[split], 0.0, path, error));
     }
     return ADCGS_OK;
 }
 
 /** Training views of all frames: those of a frame are spread over all directions, and differ from frame to frame. */
-static adcgs_status add_training_views(adcgs_scene *scene, uint32_t frames, const char *path, adcgs_error *error)
+static adcgs_status add_training_views(adcgs_scene *scene, const adcgs_splat_aims *aims, uint32_t frames, const char *path,
+                                       adcgs_error *error)
 {
     const uint32_t each = ADCGS_MIN(ADCGS_MAX(DYNAMIC_VIEWS / frames, FRAME_VIEWS_MIN), FRAME_VIEWS_MAX), all = each * frames;
     ADCGS_TRY(alloc_views(scene, ADCGS_SPLIT_TRAIN, all, path, error));
     for (uint32_t f = 0; f < frames; f++)
         for (uint32_t k = 0; k < each; k++)
-            ADCGS_TRY(add_view(scene, ADCGS_SPLIT_TRAIN, k * frames + f, all, f / (frames - 1.0), path, error));
+            ADCGS_TRY(add_view(scene, aims, ADCGS_SPLIT_TRAIN, k * frames + f, all, f / (frames - 1.0), path, error));
     return ADCGS_OK;
 }
 
@@ -181,7 +219,8 @@ static adcgs_status add_training_views(adcgs_scene *scene, uint32_t frames, cons
  * Fixed cameras at some frames, so that the pixels that change with time are known. Continuous splats are seen halfway between
  * frames.
  */
-static adcgs_status add_fixed_views(adcgs_scene *scene, int split, uint32_t frames, const char *path, adcgs_error *error)
+static adcgs_status add_fixed_views(adcgs_scene *scene, const adcgs_splat_aims *aims, int split, uint32_t frames,
+                                    const char *path, adcgs_error *error)
 {
     const uint32_t times = ADCGS_MIN(frames, FIXED_TIMES);
     const int between = scene->splats->dynamic->is_continuous;
@@ -190,7 +229,7 @@ static adcgs_status add_fixed_views(adcgs_scene *scene, int split, uint32_t fram
         for (uint32_t k = 0; k < times; k++) {
             const double frame = times > 1 ? floor((double)k * (frames - 1) / (times - 1) + 0.5) : 0.0;
             const double aside = !between ? 0.0 : frame < frames - 1.0 ? 0.5 : -0.5;
-            ADCGS_TRY(add_view(scene, split, c, n_fixed[split], (frame + aside) / (frames - 1.0), path, error));
+            ADCGS_TRY(add_view(scene, aims, split, c, n_fixed[split], (frame + aside) / (frames - 1.0), path, error));
         }
     return ADCGS_OK;
 }
@@ -227,23 +266,25 @@ static adcgs_status take_points(adcgs_points *out, const adcgs_splats *s, const 
 static adcgs_status read_static(adcgs_scene *scene, int want_points, const char *path, adcgs_error *error)
 {
     adcgs_splat_scene *const s = scene->splats;
+    adcgs_splat_aims aims;
     sample m;
     adcgs_status status = sample_alloc(&m, s->splats.n, path, error);
     if (status == ADCGS_OK) {
         sample_add(&m, &s->splats, 1);
-        status = find_region(s, &m, path, error);
+        status = find_aims(&aims, s, &m, &s->splats, path, error);
     }
     sample_clear(&m);
     ADCGS_TRY(status);
     if (want_points)
         ADCGS_TRY(take_points(&scene->points, &s->splats, path, error));
     adcgs_splat_scene_normalise(s, &s->splats);
-    return add_static_views(scene, path, error);
+    return add_static_views(scene, &aims, path, error);
 }
 
-/** Finds the region that splats over time occupy at some times. */
-static adcgs_status survey(adcgs_splat_scene *s, sample *m, const char *path, adcgs_error *error)
+/** Finds the region that splats over time occupy at some times, and where to look at it from in the middle one. */
+static adcgs_status survey(adcgs_splat_aims *aims, adcgs_splat_scene *s, sample *m, const char *path, adcgs_error *error)
 {
+    adcgs_splats middle;
     for (int i = 0; i < REGION_TIMES; i++) {
         adcgs_splats state;
         ADCGS_TRY(adcgs_dynamic_at(s->dynamic, adcgs_dynamic_duration(s->dynamic) * i / (REGION_TIMES - 1.0), &state, error));
@@ -251,17 +292,21 @@ static adcgs_status survey(adcgs_splat_scene *s, sample *m, const char *path, ad
         sample_add(m, &state, step);
         adcgs_splats_free(&state);
     }
-    return find_region(s, m, path, error);
+    ADCGS_TRY(adcgs_dynamic_at(s->dynamic, 0.5 * adcgs_dynamic_duration(s->dynamic), &middle, error));
+    const adcgs_status status = find_aims(aims, s, m, &middle, path, error);
+    adcgs_splats_free(&middle);
+    return status;
 }
 
 static adcgs_status read_dynamic(adcgs_scene *scene, const char *path, adcgs_error *error)
 {
     adcgs_splat_scene *const s = scene->splats;
     const uint32_t frames = s->dynamic->frames;
+    adcgs_splat_aims aims;
     sample m;
     adcgs_status status = sample_alloc(&m, REGION_SPLATS + REGION_TIMES, path, error);
     if (status == ADCGS_OK)
-        status = survey(s, &m, path, error);
+        status = survey(&aims, s, &m, path, error);
     sample_clear(&m);
     ADCGS_TRY(status);
     adcgs_splat_scene_normalise(s, &s->splats);
@@ -269,9 +314,9 @@ static adcgs_status read_dynamic(adcgs_scene *scene, const char *path, adcgs_err
     scene->rate = s->dynamic->rate;
     if (*s->dynamic->remark)
         adcgs_scene_remark(scene, "%s", s->dynamic->remark);
-    ADCGS_TRY(add_training_views(scene, frames, path, error));
-    ADCGS_TRY(add_fixed_views(scene, ADCGS_SPLIT_VAL, frames, path, error));
-    return add_fixed_views(scene, ADCGS_SPLIT_TEST, frames, path, error);
+    ADCGS_TRY(add_training_views(scene, &aims, frames, path, error));
+    ADCGS_TRY(add_fixed_views(scene, &aims, ADCGS_SPLIT_VAL, frames, path, error));
+    return add_fixed_views(scene, &aims, ADCGS_SPLIT_TEST, frames, path, error);
 }
 
 adcgs_status adcgs_splat_scene_read(adcgs_scene *scene, int want_points, const adcgs_dynamic_options *options, const char *path,

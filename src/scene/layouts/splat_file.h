@@ -3,7 +3,8 @@
  * A file of splats (media/splats/splats.h) as a static scene, or splats over time (media/dynamic/dynamic_splats.h) as a dynamic
  * one. The views are rendered from the splats by our own renderer, each time that a view is loaded. They are pinholes of 400x400
  * pixels on two spheres around the splats, spread evenly over each, that look at the centre. The outer sphere's images show all
- * splats except the outermost twentieth; the inner sphere's images show a part of them, larger.
+ * splats except the outermost twentieth; the inner sphere's images show a part of them, larger. Splats that do not look like an
+ * object are seen from the directions that suit them (splat_aims.h).
  */
 #ifndef ADCGS_SCENE_LAYOUTS_SPLAT_FILE_H
 #define ADCGS_SCENE_LAYOUTS_SPLAT_FILE_H
