@@ -5,6 +5,7 @@
 #include "scene/content.h"
 
 #include "base/digest.h"
+#include "scene/splat_views.h"
 #include "system/file.h"
 
 #include <stdlib.h>
@@ -38,7 +39,11 @@ adcgs_status adcgs_scene_content(const adcgs_scene *scene, adcgs_split split, ui
     if (!buffer)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", scene->directory);
     adcgs_md5_init(&md5);
-    for (uint32_t i = 0; status == ADCGS_OK && i < scene->n_views[split]; i++) {
+    const adcgs_dynamic *const dynamic = scene->splats ? scene->splats->dynamic : NULL;
+    const char *path;
+    for (uint32_t i = 0; dynamic && status == ADCGS_OK && (path = adcgs_dynamic_path(dynamic, i)); i++)
+        status = add_file(&md5, buffer, path, error);
+    for (uint32_t i = 0; !dynamic && status == ADCGS_OK && i < scene->n_views[split]; i++) {
         const adcgs_scene_view *view = &scene->views[split][i];
         if (!last || strcmp(view->path, last)) /* views of one video are adjacent */
             status = add_file(&md5, buffer, view->path, error);

@@ -40,6 +40,16 @@ code()
 code rows
 code mixed
 
+# An interrupted run continues to the same bytes, if the files are the same.
+run="./adcgs-enc $dir/rows -o $dir/again.adcgs --fps 10 --preset draft -n 150 --scale 4 --seed 1 --threads 1"
+interrupt TERM "$dir/stop.log" '"iteration":100' $run --log "$dir/stop.log"
+[ -s "$dir/again.adcgs.checkpoint" ] || bad "no checkpoint"
+cp "$dir/rows/frame9.ply" "$dir/kept.ply" && cp "$dir/rows/frame7.ply" "$dir/rows/frame9.ply"
+expect 4 "checkpoint" $run -q --resume "$dir/again.adcgs.checkpoint"
+cp "$dir/kept.ply" "$dir/rows/frame9.ply"
+expect 0 "" $run -q --resume "$dir/again.adcgs.checkpoint"
+cmp -s "$dir/again.adcgs" "$dir/rows.adcgs" || bad "a resumed run gives another stream"
+
 # Faults are named.
 cp "$dir/rows/frame9.ply" "$dir/rows/other1.ply"
 expect 4 "different names before the number" ./adcgs-enc "$dir/rows" -o "$dir/x.adcgs"

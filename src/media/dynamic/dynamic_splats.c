@@ -114,6 +114,11 @@ adcgs_status adcgs_dynamic_at(const adcgs_dynamic *m, double seconds, adcgs_spla
     return status;
 }
 
+const char *adcgs_dynamic_path(const adcgs_dynamic *m, uint32_t i)
+{
+    return m->reader == &adcgs_dynamic_files ? adcgs_splat_files_path(m, i) : i ? NULL : m->path;
+}
+
 void adcgs_dynamic_free(adcgs_dynamic **dynamic)
 {
     adcgs_dynamic *const m = *dynamic;

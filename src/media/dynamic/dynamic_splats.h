@@ -48,6 +48,8 @@ int adcgs_dynamic_is(const char *path);
  * ADCGS_ERR_UNSUPPORTED for a feature of the format that is not read. On failure *out is NULL.
  */
 adcgs_status adcgs_dynamic_open(adcgs_dynamic **out, const char *path, const adcgs_dynamic_options *options, adcgs_error *error);
+/** Path of file i of the source, in the order of frames; NULL behind the last. */
+const char *adcgs_dynamic_path(const adcgs_dynamic *dynamic, uint32_t i);
 /** Seconds from the first frame to the last. */
 double adcgs_dynamic_duration(const adcgs_dynamic *dynamic);
 /**

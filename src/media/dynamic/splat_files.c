@@ -282,6 +282,12 @@ static adcgs_status at_file(const adcgs_dynamic *d, double seconds, adcgs_splats
     return ADCGS_OK;
 }
 
+const char *adcgs_splat_files_path(const adcgs_dynamic *d, uint32_t frame)
+{
+    const files *const f = d->state;
+    return frame < f->n ? f->path[frame] : NULL;
+}
+
 static void close_files(adcgs_dynamic *d)
 {
     files *const f = d->state;
