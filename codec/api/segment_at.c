@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Splats to render at a time: the segment that serves the time, the segment that is crossfaded with it, their splats. */
+#include "api/segment_at.h"
+
 #include "api/decoder_priv.h"
 
 #include "base/strict.h"
@@ -182,8 +184,7 @@ adcgs_status adcgs_decoder_state_at(adcgs_decoder *d, double time, adcgs_render_
     return primitives_of(d, segment - 1, time, &out->before, error);
 }
 
-/** Splats at a time, of the segment that serves it alone. */
-static adcgs_status primitives_at(adcgs_decoder *d, double time, uint32_t *segment, adcgs_primitives *out, adcgs_error *error)
+adcgs_status adcgs_decoder_primitives(adcgs_decoder *d, double time, uint32_t *segment, adcgs_primitives *out, adcgs_error *error)
 {
     int is_fade;
     ADCGS_TRY(bring(d, time, 0, segment, &is_fade, error));
@@ -196,7 +197,7 @@ adcgs_status adcgs_get_primitives(adcgs_decoder *decoder, double time, adcgs_pri
     ADCGS_OWN_ERROR(error);
     ADCGS_REQUIRE(decoder, error);
     ADCGS_REQUIRE(out, error);
-    return primitives_at(decoder, time, &segment, out, error);
+    return adcgs_decoder_primitives(decoder, time, &segment, out, error);
 }
 
 adcgs_status adcgs_get_splat_digest(adcgs_decoder *decoder, double time, uint8_t digest[16], adcgs_error *error)
@@ -206,7 +207,7 @@ adcgs_status adcgs_get_splat_digest(adcgs_decoder *decoder, double time, uint8_t
     ADCGS_OWN_ERROR(error);
     ADCGS_REQUIRE(decoder, error);
     ADCGS_REQUIRE(digest, error);
-    ADCGS_TRY(primitives_at(decoder, time, &segment, &primitives, error));
+    ADCGS_TRY(adcgs_decoder_primitives(decoder, time, &segment, &primitives, error));
     const adcgs_model *const coarser = &decoder->drawn[segment % 2].coarser;
     adcgs_splat_digest(coarser->n ? coarser : model_at_hand(decoder, segment), &primitives, digest);
     return ADCGS_OK;

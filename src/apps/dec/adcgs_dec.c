@@ -307,7 +307,7 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
     if (s->cameras)
         return write_cameras(s, from.decoder, error);
     if (s->splats) {
-        const adcgs_dec_splats_config how = {.target = s->splats, .rest_degree = s->rest_degree};
+        const adcgs_dec_splats_config how = {.target = s->splats, .rest_degree = s->rest_degree, .is_stable = s->stable};
         return adcgs_dec_splats(cli, from.decoder, s->input, &how, &s->request, error);
     }
     adcgs_status status = s->beside ? open_input(&from.beside, &s->beside_source, s->beside, s, error) : ADCGS_OK;

@@ -27,8 +27,11 @@ static void add_frame_options(adcgs_option_table *out, adcgs_dec_settings *s)
         {"linear", 0, ADCGS_OPTION_FLAG, &s->linear, 0, 0, NULL, "linear light in EXR instead of sRGB's curve", NULL, NULL},
         {"splats", 0, ADCGS_OPTION_FILE, &s->splats, 0, 0, "FILE",
          "target of splats instead of frames, as .ply, .spz, .glb or .sog:\n"
-         "out.ply for one time (default: the first), out%04d.ply for a\nrange of times",
+         "out.ply for one time (default: the first), out%04d.ply for a\nrange of times; all times in one file: .ftgs.ply, "
+         ".splatv",
          NULL, NULL},
+        {"stable", 0, ADCGS_OPTION_FLAG, &s->stable, 0, 0, NULL,
+         "with --splats time_%05d.ply: row k is the same splat in all files", NULL, NULL},
         {"f-rest", 0, ADCGS_OPTION_INT, &s->rest_degree, 1, 3, "DEGREE",
          "with --splats: degree of the zero harmonics in PLY, for programs\nthat require them (default: none)", NULL, NULL},
         {"bits", 0, ADCGS_OPTION_INT, &s->bits, 8, 16, "N", "bits of a sample in PNG, TIFF and PPM: 8 or 16", NULL, NULL},
@@ -151,8 +154,8 @@ const adcgs_option_rule adcgs_dec_rules[ADCGS_DEC_RULES] = {
     {"script", ADCGS_OPTION_NEEDS, "play"},
     {"half,float", ADCGS_OPTION_APART, NULL},
     {"answer", ADCGS_OPTION_GOES_WITH, "layers,conceal,strict,threads,cpu"},
-    {"splats", ADCGS_OPTION_GOES_WITH, "f-rest,time,layers,tiers,conceal,strict,threads,cpu"},
-    {"f-rest", ADCGS_OPTION_NEEDS, "splats"},
+    {"splats", ADCGS_OPTION_GOES_WITH, "f-rest,stable,time,layers,tiers,conceal,strict,threads,cpu"},
+    {"f-rest,stable", ADCGS_OPTION_NEEDS, "splats"},
     {FORMATS, ADCGS_OPTION_NEEDS, "output"},
     {"sound-offset", ADCGS_OPTION_NEEDS, "sound"},
     {"crf,bitrate", ADCGS_OPTION_APART, NULL},

@@ -16,7 +16,7 @@ typedef struct adcgs_dec_settings {
     adcgs_video_style video;
     adcgs_camera_path_request request;
     adcgs_config config;
-    int quiet, order, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
+    int quiet, order, tiers, cpu, fit, half, rest_degree, stable, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     int has_sound_offset;
     char *sound;                         /**< file of the sound, found by adcgs_dec_find_sound(); the caller free()s it */
     double sound_offset;                 /**< time of the stream at which the sound begins, in seconds */

@@ -4,6 +4,7 @@
 
 #include "apps/dec/dec_splats.h"
 
+#include "apps/dec/dec_clip.h"
 #include "media/sink.h"
 #include "media/splats/offset.h"
 #include "media/splats/splats.h"
@@ -16,10 +17,21 @@
 #include <stdlib.h>
 #include <strings.h>
 
-static adcgs_status check_target(const char *target, const adcgs_splats_style *style, int has_many, adcgs_error *error)
+static adcgs_status check_target(const adcgs_dec_splats_config *how, int has_many, adcgs_error *error)
 {
-    const int places = adcgs_pattern_places(target);
-    ADCGS_TRY(adcgs_splats_check_name(target, style, error));
+    const char *const target = how->target;
+    const adcgs_splats_style style = {.rest_degree = how->rest_degree};
+    const int places = adcgs_pattern_places(target), is_clip = adcgs_dec_clip_is(target);
+    if (is_clip && (places || how->is_stable || how->rest_degree))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: one file has all times: expected no %s", target,
+                          places           ? "number like %04d in the name"
+                          : how->is_stable ? "--stable"
+                                           : "--f-rest");
+    if (is_clip)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_splats_check_name(target, &style, error));
+    if (how->is_stable && (places != 1 || strcasecmp(adcgs_extension(target), "ply")))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: --stable writes PLY files, expected a name like time_%%05d.ply", target);
     if (places < 0 || places > 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: expected one number like %%04d in the name", target);
     if (!places && has_many)
@@ -54,6 +66,51 @@ static adcgs_status write_frame(uint32_t *n, adcgs_decoder *decoder, const adcgs
     const adcgs_status status = adcgs_splats_write(&splats, &style, path, error);
     *n = splats.n;
     adcgs_splats_free(&splats);
+    return status;
+}
+
+/** One file of rows that are the same splats in each. */
+static adcgs_status write_row_frame(adcgs_splats *splats, const adcgs_dec_rows *rows, const adcgs_dec_span *span,
+                                    adcgs_decoder *decoder, double time, int rest_degree, const char *path, adcgs_error *error)
+{
+    adcgs_primitives primitives;
+    char comment[128];
+    const adcgs_splats_style style = {.comment = comment, .rest_degree = rest_degree};
+    ADCGS_TRY(adcgs_dec_rows_at(span, decoder, time, &primitives, path, error));
+    adcgs_dec_rows_update(splats, rows, span, &primitives);
+    snprintf(comment, sizeof comment, "adcgs %s, time %.9g s", PACKAGE_VERSION, time);
+    return adcgs_splats_write(splats, &style, path, error);
+}
+
+static adcgs_status write_rows(const adcgs_dec_rows *rows, adcgs_decoder *decoder, const adcgs_dec_splats_config *how,
+                               const adcgs_camera_path *frames, adcgs_error *error)
+{
+    const size_t size = strlen(how->target) + 128;
+    char *const path = malloc(size);
+    adcgs_splats splats = {0};
+    adcgs_status status = path ? adcgs_dec_rows_start(&splats, rows, how->target, error)
+                               : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", how->target);
+    for (size_t k = 0; k < rows->n; k++)
+        for (int i = 0; i < rows->span[k].frames && status == ADCGS_OK && !adcgs_interrupted(); i++) {
+            const int frame = rows->span[k].first + i;
+            adcgs_pattern_format(how->target, frame, path, size);
+            status =
+                write_row_frame(&splats, rows, &rows->span[k], decoder, frames->frame[frame].time, how->rest_degree, path, error);
+        }
+    adcgs_splats_free(&splats);
+    free(path);
+    return status;
+}
+
+static adcgs_status write_stable(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, const adcgs_dec_splats_config *how,
+                                 const adcgs_camera_path *frames, adcgs_error *error)
+{
+    adcgs_dec_rows rows;
+    adcgs_status status = adcgs_dec_rows_find(&rows, decoder, info, frames, how->target, error);
+    *n = rows.total;
+    if (status == ADCGS_OK && !adcgs_interrupted())
+        status = write_rows(&rows, decoder, how, frames, error);
+    adcgs_dec_rows_free(&rows);
     return status;
 }
 
@@ -92,7 +149,7 @@ static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_i
 adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input, const adcgs_dec_splats_config *how,
                               const adcgs_camera_path_request *request, adcgs_error *error)
 {
-    const adcgs_splats_style style = {.rest_degree = how->rest_degree};
+    const int is_clip = adcgs_dec_clip_is(how->target);
     adcgs_info info;
     adcgs_camera_path frames;
     uint32_t n = 0;
@@ -100,9 +157,9 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
     ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     if (!request->has_times) {
         times.begin = info.time_start;
-        times.end = adcgs_pattern_places(how->target) == 0 ? info.time_start : info.time_end;
+        times.end = adcgs_pattern_places(how->target) == 0 && !is_clip ? info.time_start : info.time_end;
     }
-    ADCGS_TRY(check_target(how->target, &style, times.end > times.begin, error));
+    ADCGS_TRY(check_target(how, times.end > times.begin, error));
     if (info.truncated)
         adcgs_cli_note(cli, "%s: the stream ends early; writing its complete part", input);
     ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &times, error));
@@ -112,10 +169,12 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
                        "s",
                        input, frames.outside, frames.n, adcgs_s((uint64_t)frames.n), frames.outside == 1 ? "shows" : "show",
                        info.time_start, info.time_end);
-    const adcgs_status status = write_all(&n, decoder, &info, how, &frames, error);
+    const adcgs_status status = is_clip          ? adcgs_dec_clip_write(cli, decoder, &info, &frames, input, how->target, error)
+                                : how->is_stable ? write_stable(&n, decoder, &info, how, &frames, error)
+                                                 : write_all(&n, decoder, &info, how, &frames, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         report_offset(cli, &info, how->target);
-    if (status == ADCGS_OK && !adcgs_interrupted())
+    if (status == ADCGS_OK && !adcgs_interrupted() && !is_clip)
         adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, frames.n, frames.n == 1 ? "" : "s", n);
     adcgs_camera_path_free(&frames);
     return status;

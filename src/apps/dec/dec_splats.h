@@ -10,10 +10,11 @@
 typedef struct adcgs_dec_splats_config {
     const char *target;
     int rest_degree; /**< see adcgs_splats_style */
+    int is_stable;   /**< row k is the same splat in all files */
 } adcgs_dec_splats_config;
 
 /**
- * Writes the splats at the requested times, each to a file of its own. target has one number like %04d in its name, or there is
+ * Writes the splats at the requested times, each to a file of its own, or all to one file of a format of splats over time. target has one number like %04d in its name, or there is
  * only one time. Without requested times, a target without a number gets the stream's first time, and a target with one gets all
  * times. input names the stream.
  */

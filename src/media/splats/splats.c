@@ -114,9 +114,8 @@ void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out)
         out->rotation[i] = splats->rotation[i];
 }
 
-/** Copy one primitive to index `to`. \return true if it is visible and can be stored */
-static int take_one(adcgs_splats *out, uint32_t to, const adcgs_primitives *p, uint32_t from, const double origin[3],
-                    double scale)
+int adcgs_splats_take_one(adcgs_splats *out, uint32_t to, const adcgs_primitives *p, uint32_t from, const double origin[3],
+                          double scale)
 {
     if (!(p->opacity[from] > 0.0f))
         return 0;
@@ -143,7 +142,7 @@ adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primit
     for (int a = 0; a < 3; a++)
         near_by[a] = origin[a] - out->offset[a];
     for (uint32_t i = 0; i < primitives->n; i++)
-        n += (uint32_t)take_one(out, n, primitives, i, near_by, scale);
+        n += (uint32_t)adcgs_splats_take_one(out, n, primitives, i, near_by, scale);
     for (uint32_t i = n; i < out->n; i++) /* a dropped primitive may have been stored here */
         out->opacity[i] = 0.0f;
     out->n = n;

@@ -62,6 +62,13 @@ void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out);
 adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primitives, const double origin[3], double scale,
                                const char *path, adcgs_error *error);
 
+/**
+ * Copy one primitive to index `to`, world = origin + scale * scene. \return true if it is visible and can be stored; else `to`
+ * has any values
+ */
+int adcgs_splats_take_one(adcgs_splats *out, uint32_t to, const adcgs_primitives *p, uint32_t from, const double origin[3],
+                          double scale);
+
 /** True if the file begins like one of splats; any PLY file does. */
 int adcgs_splats_is(const char *path);
 /**
