@@ -14,6 +14,7 @@
 
 /* Origin: chosen by hand, not measured. */
 #define MEMORY ((size_t)256 << 20) /* bytes of samples at a time */
+#define TOLERANCE 0.002            /* error of positions in scene units, about a pixel of an image of the whole scene */
 #define CAMERAS_MAX 32             /* stored cameras in a file, at most */
 
 /** Formats by the end of the file name. */
@@ -87,6 +88,7 @@ static adcgs_status fit_span(clip *c, const adcgs_dec_span *span, adcgs_piece_fo
                                          .clip = (uint32_t)c->frames->n,
                                          .first = (uint32_t)span->first,
                                          .frames = (uint32_t)span->frames,
+                                         .tolerance = TOLERANCE * c->rows.scale,
                                          .sample = samples};
         status = sample(c, span, first, &paths, error);
         if (status == ADCGS_OK)

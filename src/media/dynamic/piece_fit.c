@@ -9,6 +9,7 @@
 #define TERMS (ADCGS_PIECE_ORDERS + 1) /* of a polynomial */
 
 /* Origin: chosen by hand, not measured. */
+#define REACH 4.3         /* standard deviations in which a piece counts; arithmetic: its weight is below 1e-4 beyond */
 #define WEIGHT_MIN 1e-4   /* of samples that count */
 #define RIDGE 1e-6        /* part of the sum of weights that is added to the diagonal: few samples give a low order */
 #define COLOUR_MOST 0.04  /* tolerated error of a colour */
@@ -55,7 +56,8 @@ static void fit_value(double out[TERMS], const adcgs_piece *p, const adcgs_piece
     const double base = value_of(&path->sample[path->low], which);
     for (int i = 0; i < TERMS; i++)
         out[i] = 0.0;
-    for (int t = path->low; t <= path->high; t++) {
+    const double reach = REACH * ADCGS_MIN((double)p->sigma, (double)ADCGS_PIECE_FOREVER), c = (double)p->centre;
+    for (int t = (int)fmax(path->low, ceil(c - reach)); t <= path->high && t <= c + reach; t++) {
         const adcgs_path_sample *const s = &path->sample[t];
         const double w = (double)s->opacity * adcgs_piece_weight(p, t), x = (t - (double)p->centre) / unit;
         double power = w;
@@ -140,8 +142,10 @@ static double frame_error(const adcgs_piece_trial *trial, const adcgs_piece_path
 {
     const int exists = t >= path->low && t <= path->high;
     const double wanted = exists ? (double)path->sample[t].opacity : 0.0;
+    const double d = trial->n > 1 ? (double)(trial->piece[1].centre - trial->piece[0].centre) : 1.0;
+    const int near_by = (int)floor((t - (double)trial->piece[0].centre) / d), most = (int)REACH;
     double left = 1.0, total = 0.0, sum = 0.0;
-    for (int k = 0; k < trial->n; k++) {
+    for (int k = ADCGS_MAX(near_by - most, 0); k <= ADCGS_MIN(near_by + 1 + most, trial->n - 1); k++) {
         const double a = (double)trial->piece[k].opacity * adcgs_piece_weight(&trial->piece[k], t);
         if (a < WEIGHT_MIN)
             continue;

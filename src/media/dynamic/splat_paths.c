@@ -12,7 +12,8 @@
 /* Origin, unless a line states one: chosen by hand, not measured. */
 #define POSITION_MOST 0.25  /* tolerated error of a position, in units of the splat's middle scale */
 #define TOLERATED 1.0       /* error of a path that needs no more pieces */
-#define GAIN 0.9            /* factor of the error that pays for more pieces */
+#define GAIN 0.8            /* factor of the error that pays for more pieces */
+#define DISTANCE_MIN 2      /* frames between pieces, at least */
 #define STEPS 12            /* of the fit of opacities */
 #define OPACITY_MOST 0.99   /* upper bound of a piece's opacity */
 #define OPACITY_LEAST 0.004 /* pieces below it are left out: 1/255 */
@@ -102,7 +103,8 @@ static void fit_path(adcgs_piece_trial *best, adcgs_piece_trial *other, const ad
     static const double widths[] = {0.6, 0.9};
     best->error = INFINITY;
     best->n = 0;
-    for (int count = 1; count <= path->high - path->low + 1 && best->error > TOLERATED; count = next_count(count))
+    for (int count = 1; (count == 1 || DISTANCE_MIN * count <= path->high - path->low + 1) && best->error > TOLERATED;
+         count = next_count(count))
         for (size_t i = 0; i < ADCGS_COUNTOF(widths) && best->error > TOLERATED; i++) {
             try_pieces(other, path, count, widths[i]);
             if (other->error < best->error * GAIN) {
@@ -144,7 +146,7 @@ static int begin_path(adcgs_piece_path *out, adcgs_path_sample *s, const adcgs_s
     }
     if (!last)
         return 0;
-    out->size = POSITION_MOST * middle(s[out->low].scale);
+    out->size = fmax(POSITION_MOST * middle(s[out->low].scale), paths->tolerance);
     out->is_open[0] = first + out->low == 0;
     out->is_open[1] = first + out->high == clip - 1;
     out->first = ADCGS_MAX(out->low - BESIDE, -first);

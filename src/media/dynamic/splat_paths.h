@@ -21,6 +21,7 @@ typedef struct adcgs_splat_paths {
     uint32_t n;
     uint32_t clip;             /**< frames of the clip, at least 1 */
     uint32_t first, frames;    /**< sampled frames */
+    double tolerance;          /**< error of positions that is tolerated for the smallest splats, > 0 */
     adcgs_path_sample *sample; /**< [n][frames]; adcgs_pieces_add() changes signs of quaternions */
 } adcgs_splat_paths;
 
