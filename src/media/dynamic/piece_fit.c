@@ -142,7 +142,7 @@ static double frame_error(const adcgs_piece_trial *trial, const adcgs_piece_path
 {
     const int exists = t >= path->low && t <= path->high;
     const double wanted = exists ? (double)path->sample[t].opacity : 0.0;
-    const double d = trial->n > 1 ? (double)(trial->piece[1].centre - trial->piece[0].centre) : 1.0;
+    const double d = trial->n > 1 ? (double)(trial->piece[1].centre - trial->piece[0].centre) : INFINITY;
     const int near_by = (int)floor((t - (double)trial->piece[0].centre) / d), most = (int)REACH;
     double left = 1.0, total = 0.0, sum = 0.0;
     for (int k = ADCGS_MAX(near_by - most, 0); k <= ADCGS_MIN(near_by + 1 + most, trial->n - 1); k++) {

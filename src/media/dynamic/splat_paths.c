@@ -14,11 +14,14 @@
 #define TOLERATED 1.0       /* error of a path that needs no more pieces */
 #define GAIN 0.8            /* factor of the error that pays for more pieces */
 #define DISTANCE_MIN 2      /* frames between pieces, at least */
-#define STEPS 12            /* of the fit of opacities */
+#define OPAQUE 0.5          /* mean opacity above which pieces are wide */
+#define NARROW 0.6          /* standard deviation of a piece, of the distance of pieces */
+#define WIDE 0.9            /* the same for opaque splats */
+#define STEPS 4             /* of the fit of opacities */
 #define OPACITY_MOST 0.99   /* upper bound of a piece's opacity */
 #define OPACITY_LEAST 0.004 /* pieces below it are left out: 1/255 */
-#define REACH 3             /* pieces to each side of a frame that count there; arithmetic: beyond 3 distances nothing is left */
-#define BESIDE 2            /* frames beyond those in which a splat exists, in which it should not be seen */
+#define REACH 2  /* pieces to each side of a frame and its two that count there; arithmetic: others weigh 0.02 or less */
+#define BESIDE 2 /* frames beyond those in which a splat exists, in which it should not be seen */
 
 static adcgs_status reserve(adcgs_pieces *p, size_t more, const char *path, adcgs_error *error)
 {
@@ -45,7 +48,7 @@ static double depth_of(double opacity)
 static double depth_at(const adcgs_piece_trial *trial, int t)
 {
     const adcgs_piece *const p = trial->piece;
-    const double d = trial->n > 1 ? (double)(p[1].centre - p[0].centre) : 1.0;
+    const double d = trial->n > 1 ? (double)(p[1].centre - p[0].centre) : INFINITY;
     const int near_by = (int)floor((t - (double)p[0].centre) / d);
     double depth = 0.0;
     for (int k = ADCGS_MAX(near_by - REACH, 0); k <= ADCGS_MIN(near_by + 1 + REACH, trial->n - 1); k++)
@@ -75,44 +78,47 @@ static void fit_opacities(adcgs_piece_trial *trial, const adcgs_piece_path *path
 }
 
 /** count pieces, and one beyond each open end; sigma is `width` distances. */
-static void try_pieces(adcgs_piece_trial *trial, const adcgs_piece_path *path, int count, double width)
+static void try_pieces(adcgs_piece_trial *trial, const adcgs_piece_path *path, int count, double width, double opacity)
 {
     const double d = (path->high - path->low + 1.0) / count, start = path->low - 0.5;
     const int forever = count == 1 && path->is_open[0] && path->is_open[1];
+    const double overlap = forever ? 1.0 : width * 2.5066; /* the sum of the weights: sqrt(2 pi) width */
     trial->n = 0;
     for (int k = forever ? 0 : -path->is_open[0]; k < count + (forever ? 0 : path->is_open[1]); k++) {
         adcgs_piece *const p = &trial->piece[trial->n++];
         *p = (adcgs_piece){.centre = (float)(start + (k + 0.5) * d),
                            .sigma = forever ? ADCGS_PIECE_FOREVER : (float)(width * d),
-                           .opacity = 0.5f};
+                           .opacity = (float)fmin(1.0 - exp(-depth_of(opacity) / overlap), OPACITY_MOST)};
         adcgs_piece_fit_motion(p, path);
     }
     fit_opacities(trial, path);
     adcgs_piece_judge(trial, path);
 }
 
-/** The next number of pieces: 1, 2, 3, 4, 6, 8, 12, ... */
-static int next_count(int count)
+/** Mean opacity of the frames that show a path. */
+static double mean_opacity(const adcgs_piece_path *path)
 {
-    return count < 3 ? count + 1 : count & (count - 1) ? count / 3 * 4 : count / 2 * 3;
+    double sum = 0.0;
+    for (int t = path->low; t <= path->high; t++)
+        sum += (double)path->sample[t].opacity;
+    return sum / (path->high - path->low + 1);
 }
 
-/** Keeps the best trial in `best`; the other one is for work. */
+/** Keeps the best trial in `best`; the other one is for work. Opaque splats need wider pieces: opacities do not just add up. */
 static void fit_path(adcgs_piece_trial *best, adcgs_piece_trial *other, const adcgs_piece_path *path)
 {
-    static const double widths[] = {0.6, 0.9};
+    const double opacity = mean_opacity(path), width = opacity > OPAQUE ? WIDE : NARROW;
+    const int most = ADCGS_MAX((path->high - path->low + 1) / DISTANCE_MIN, 1);
     best->error = INFINITY;
     best->n = 0;
-    for (int count = 1; (count == 1 || DISTANCE_MIN * count <= path->high - path->low + 1) && best->error > TOLERATED;
-         count = next_count(count))
-        for (size_t i = 0; i < ADCGS_COUNTOF(widths) && best->error > TOLERATED; i++) {
-            try_pieces(other, path, count, widths[i]);
-            if (other->error < best->error * GAIN) {
-                const adcgs_piece_trial kept = *best;
-                *best = *other;
-                *other = kept;
-            }
+    for (int count = 1; count <= most && best->error > TOLERATED; count *= 2) {
+        try_pieces(other, path, count, width, opacity);
+        if (other->error < best->error * GAIN) {
+            const adcgs_piece_trial kept = *best;
+            *best = *other;
+            *other = kept;
         }
+    }
 }
 
 /** Middle of three. */
