@@ -27,7 +27,7 @@ typedef struct adcgs_dec_settings {
 
 /** Fills the table of options, in the order of the help, with targets in the settings. */
 void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option_table *options);
-#define ADCGS_DEC_RULES 15 /**< rows of the table; definition */
+#define ADCGS_DEC_RULES 16 /**< rows of the table; definition */
 /** Options that go together. */
 extern const adcgs_option_rule adcgs_dec_rules[ADCGS_DEC_RULES];
 /** Checks the rules that the tables cannot express, and sets the derived settings. */

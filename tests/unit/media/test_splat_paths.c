@@ -74,7 +74,7 @@ static void compare(const char *path, double opacity, uint32_t rows)
         for (int i = 0; i < PATHS; i++) {
             const int is_edge = i == 2 && abs(t - FRAMES / 2) <= 3;
             const double alpha = seen(&s, i, mean);
-            if (!is_edge && fabs(alpha - (double)samples[i][t].opacity) > 0.06)
+            if (!is_edge && fabs(alpha - (double)samples[i][t].opacity) > 0.08)
                 fail_msg("%s: path %d, frame %d: opacity %g, expected %g", path, i, t, alpha, (double)samples[i][t].opacity);
             for (int a = 0; a < 3 && !is_edge && alpha > 0.1; a++)
                 if (fabs(mean[a] - (double)samples[i][t].mean[a]) > 0.05)
