@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#define TERMS (ADCGS_PIECE_ORDERS + 1) /* of a polynomial */
+#define TERMS (ADCGS_PIECE_ORDERS + 1) /* coefficients of a polynomial; arithmetic */
 
 /* Origin: chosen by hand, not measured. */
 #define REACH 4.3         /* standard deviations in which a piece counts; arithmetic: its weight is below 1e-4 beyond */

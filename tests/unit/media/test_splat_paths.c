@@ -72,7 +72,7 @@ static void compare(const char *path, double opacity, uint32_t rows)
         double mean[3];
         expect_good(adcgs_dynamic_at(d, t / 30.0, &s, &error));
         for (int i = 0; i < PATHS; i++) {
-            const int is_edge = i == 2 && abs(t - FRAMES / 2) <= 3;
+            const int is_edge = i == 2 && abs(t - FRAMES / 2) <= 4;
             const double alpha = seen(&s, i, mean);
             if (!is_edge && fabs(alpha - (double)samples[i][t].opacity) > 0.08)
                 fail_msg("%s: path %d, frame %d: opacity %g, expected %g", path, i, t, alpha, (double)samples[i][t].opacity);
