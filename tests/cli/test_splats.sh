@@ -30,12 +30,33 @@ expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/rest.PLY" --f-rest 3 --time 0.
 [ "$(size "$dir/rest.PLY")" -eq $((248 * $(vertices "$dir/a.ply"))) ] || bad "size of the PLY with f_rest_*"
 grep -q '^property float f_rest_44$' "$dir/rest.PLY" || bad "no f_rest_44"
 expect 2 "only PLY" ./adcgs-dec "$s" --splats "$dir/x.spz" --f-rest 1
-expect 2 "--f-rest needs --splats" ./adcgs-dec "$s" --md5 --f-rest 1
+expect 2 "--f-rest, .*--offset need --splats" ./adcgs-dec "$s" --md5 --f-rest 1
 expect 2 "f-rest" ./adcgs-dec "$s" --splats "$dir/x.ply" --f-rest 4
 expect 2 "one number" ./adcgs-dec "$s" --splats "$dir/x%d%d.ply"
 expect 2 "--splats goes with" ./adcgs-dec "$s" --splats "$dir/x.ply" --md5
 expect 2 "--splats goes with" ./adcgs-dec "$s" --splats "$dir/x.ply" --camera 0
 expect 3 "no/x.ply" ./adcgs-dec "$s" --splats "$dir/no/x.ply"
+
+# Axes, offsets, and versions of SPZ.
+expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/keep.ply" --axes keep --time 0.03
+expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/down.ply" --axes y-down --time 0.03
+cmp -s "$dir/a.ply" "$dir/down.ply" || bad "y is not down in PLY by default"
+cmp -s "$dir/keep.ply" "$dir/down.ply" && bad "--axes keep turns splats, or the stream has no axes"
+expect 0 "the offset 1000 -20.5 0 is subtracted from positions, before the splats are turned; a comment" \
+    ./adcgs-dec "$s" --splats "$dir/o.ply" --offset 1000,-20.5,0
+grep -q '^comment offset 1000 ' "$dir/o.ply" || bad "no offset in PLY"
+expect 2 "expected X,Y,Z" ./adcgs-dec "$s" --splats "$dir/x.ply" --offset 1,2
+expect 2 "expected X,Y,Z" ./adcgs-dec "$s" --splats "$dir/x.ply" --offset 1,2,3,4
+expect 2 "expected X,Y,Z" ./adcgs-dec "$s" --splats "$dir/x.ply" --offset 1,2,nan
+expect 2 "--axes and --offset need --splats" ./adcgs-dec "$s" --md5 --axes keep
+expect 2 "only SPZ" ./adcgs-dec "$s" --splats "$dir/x.ply" --spz-version 3
+expect 2 "spz-version" ./adcgs-dec "$s" --splats "$dir/x.spz" --spz-version 1
+if ./adcgs-dec "$s" --splats "$dir/3.spz" --spz-version 3 2>/dev/null; then
+    [ "$(head -c 2 "$dir/3.spz" | od -An -tx1)" = " 1f 8b" ] || bad "SPZ of version 3 is not gzip"
+    expect 0 "the offset 9000 0 0 is subtracted.*the format cannot store it" ./adcgs-dec "$s" --splats "$dir/x.spz" --offset 9000,0,0
+    expect 0 "are rounded to steps of about 0.00195.*give --offset" ./adcgs-dec "$s" --splats "$dir/x.spz" --offset 9000,0,0
+    rm "$dir/x.spz"
+fi
 
 # Other formats, also read as scenes: the views of both are nearly those of the PLY. Their y axis is up.
 for format in spz glb sog; do

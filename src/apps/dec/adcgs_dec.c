@@ -298,7 +298,7 @@ static adcgs_status write_cameras(const settings *s, adcgs_decoder *decoder, adc
 static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
 {
     streams from = {0};
-    const int as_clip = !s->cameras && !s->splats && !s->beside && s->budget.of == ADCGS_BUDGET_NONE && s->part < 0.0;
+    const int as_clip = !s->cameras && !s->splats.target && !s->beside && s->budget.of == ADCGS_BUDGET_NONE && s->part < 0.0;
     if (as_clip && (adcgs_pipe_is(s->input) || (adcgs_is_url(s->input) && !s->config.on_demand && !s->config.conceal)))
         return show_live(cli, s, decoder, mismatch, error);
     ADCGS_TRY(open_input(decoder, &s->source, s->input, s, error));
@@ -306,10 +306,8 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
     ADCGS_TRY(place_times(s, from.decoder, error));
     if (s->cameras)
         return write_cameras(s, from.decoder, error);
-    if (s->splats) {
-        const adcgs_dec_splats_config how = {.target = s->splats, .rest_degree = s->rest_degree, .is_stable = s->stable};
-        return adcgs_dec_splats(cli, from.decoder, s->input, &how, &s->request, error);
-    }
+    if (s->splats.target)
+        return adcgs_dec_splats(cli, from.decoder, s->input, &s->splats, &s->request, error);
     adcgs_status status = s->beside ? open_input(&from.beside, &s->beside_source, s->beside, s, error) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = decode(cli, s, &from, mismatch, error);

@@ -11,6 +11,8 @@
 
 #include <stdlib.h>
 
+#define OFFSET_MAX 1e12 /* of an offset of splats, in world units; chosen by hand, not measured */
+
 /** Options for the target of frames, and its samples. */
 static void add_frame_options(adcgs_option_table *out, adcgs_dec_settings *s)
 {
@@ -25,19 +27,38 @@ static void add_frame_options(adcgs_option_table *out, adcgs_dec_settings *s)
         {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
         {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL, NULL},
         {"linear", 0, ADCGS_OPTION_FLAG, &s->linear, 0, 0, NULL, "linear light in EXR instead of sRGB's curve", NULL, NULL},
-        {"splats", 0, ADCGS_OPTION_FILE, &s->splats, 0, 0, "FILE",
-         "target of splats instead of frames, as .ply, .spz, .glb or .sog:\n"
-         "out.ply for one time (default: the first), out%04d.ply for a\nrange of times; all times in one file: .ftgs.ply, "
-         ".splatv",
-         NULL, NULL},
-        {"stable", 0, ADCGS_OPTION_FLAG, &s->stable, 0, 0, NULL,
-         "with --splats time_%05d.ply: row k is the same splat in all files", NULL, NULL},
-        {"f-rest", 0, ADCGS_OPTION_INT, &s->rest_degree, 1, 3, "DEGREE",
-         "with --splats: degree of the zero harmonics in PLY, for programs\nthat require them (default: none)", NULL, NULL},
         {"bits", 0, ADCGS_OPTION_INT, &s->bits, 8, 16, "N", "bits of a sample in PNG, TIFF and PPM: 8 or 16", NULL, NULL},
         {"alpha", 0, ADCGS_OPTION_FLAG, &s->alpha, 0, 0, NULL,
          "write alpha and leave out the background: premultiplied in\nEXR, straight in PNG, TIFF and videos", NULL, NULL},
         {"depth", 0, ADCGS_OPTION_FLAG, &s->depth, 0, 0, NULL, "write depth as channel Z of EXR, in world units", NULL, NULL},
+    };
+    adcgs_options_add(out, table, ADCGS_COUNTOF(table));
+}
+
+/** Options for files of splats. */
+static void add_splat_options(adcgs_option_table *out, adcgs_dec_settings *s)
+{
+    static const char *const axes[] = {"keep", "y-up", "z-up", "y-down", NULL}; /* codes of ADCGS_SPLATS_Y_UP... */
+    static const char *const offsets[] = {"keep", NULL};
+    const adcgs_option table[] = {
+        {"splats", 0, ADCGS_OPTION_FILE, &s->splats.target, 0, 0, "FILE",
+         "target of splats instead of frames, as .ply, .spz, .glb or .sog:\n"
+         "out.ply for one time (default: the first), out%04d.ply for a\nrange of times; all times in one file: .ftgs.ply, .splatv",
+         NULL, NULL},
+        {"stable", 0, ADCGS_OPTION_FLAG, &s->splats.is_stable, 0, 0, NULL,
+         "with --splats time_%05d.ply: row k is the same splat in all files", NULL, NULL},
+        {"f-rest", 0, ADCGS_OPTION_INT, &s->splats.style.rest_degree, 1, 3, "DEGREE",
+         "with --splats: degree of the zero harmonics in PLY, for programs\nthat require them (default: none)", NULL, NULL},
+        {"spz-version", 0, ADCGS_OPTION_INT, &s->splats.style.spz_version, 2, 4, "N",
+         "version of SPZ: 2, 3 or 4 (default: 4), for programs that do not\nknow version 4", NULL, NULL},
+        {"axes", 0, ADCGS_OPTION_CHOICE, &s->axes, 0, 0, "AXES",
+         "axes of the splats: y-up, z-up, y-down, or keep for the stream's\n"
+         "(default: y-up in SPZ and GLB, y-down in PLY and SOG)",
+         axes, &s->has_axes},
+        {"offset", 0, ADCGS_OPTION_STRING, &s->offset_text, 0, 0, "X,Y,Z|keep",
+         "offset to subtract from positions, in the stream's axes, or keep\n"
+         "for none (default: the place of a scene far from the origin)",
+         offsets, NULL},
     };
     adcgs_options_add(out, table, ADCGS_COUNTOF(table));
 }
@@ -139,6 +160,7 @@ static void add_program_options(adcgs_option_table *out, adcgs_dec_settings *s)
 void adcgs_dec_options(adcgs_dec_settings *s, adcgs_option_table *options)
 {
     add_frame_options(options, s);
+    add_splat_options(options, s);
     add_video_options(options, s);
     add_view_options(options, s);
     add_decoding_options(options, s);
@@ -154,9 +176,8 @@ const adcgs_option_rule adcgs_dec_rules[ADCGS_DEC_RULES] = {
     {"script", ADCGS_OPTION_NEEDS, "play"},
     {"half,float", ADCGS_OPTION_APART, NULL},
     {"answer", ADCGS_OPTION_GOES_WITH, "layers,conceal,strict,threads,cpu"},
-    {"splats", ADCGS_OPTION_GOES_WITH, "f-rest,stable,time,layers,tiers,conceal,strict,threads,cpu"},
-    {"f-rest", ADCGS_OPTION_NEEDS, "splats"},
-    {"stable", ADCGS_OPTION_NEEDS, "splats"},
+    {"splats", ADCGS_OPTION_GOES_WITH, "f-rest,stable,spz-version,axes,offset,time,layers,tiers,conceal,strict,threads,cpu"},
+    {"f-rest,stable,spz-version,axes,offset", ADCGS_OPTION_NEEDS, "splats"},
     {FORMATS, ADCGS_OPTION_NEEDS, "output"},
     {"sound-offset", ADCGS_OPTION_NEEDS, "sound"},
     {"crf,bitrate", ADCGS_OPTION_APART, NULL},
@@ -198,10 +219,32 @@ static adcgs_status check_times(adcgs_dec_settings *s, adcgs_error *error)
     return ADCGS_OK;
 }
 
+/** Parses the offset, X,Y,Z or keep, and takes over the axes. */
+static adcgs_status check_splats(adcgs_dec_settings *s, adcgs_error *error)
+{
+    char text[128], *rest = text;
+    if (s->has_axes)
+        s->splats.style.axes = s->axes ? (uint8_t)s->axes : ADCGS_SPLATS_KEEP;
+    s->splats.has_offset = s->offset_text != NULL;
+    if (!s->offset_text || !strcmp(s->offset_text, "keep"))
+        return ADCGS_OK;
+    int good = (size_t)snprintf(text, sizeof text, "%s", s->offset_text) < sizeof text;
+    for (int a = 0; a < 3 && good; a++) {
+        char *const end = rest + strcspn(rest, ",");
+        good = (*end == ',') == (a < 2);
+        *end = 0;
+        good = good && !adcgs_parse_real(rest, -OFFSET_MAX, OFFSET_MAX, &s->splats.offset[a]);
+        rest = end + 1;
+    }
+    return good ? ADCGS_OK
+                : adcgs_fail(error, ADCGS_ERR_USAGE, "--offset %s: expected X,Y,Z, each up to 1e12, or keep", s->offset_text);
+}
+
 adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
 {
     s->config.cpu = (adcgs_cpu_level)s->cpu;
     ADCGS_TRY(check_times(s, error));
+    ADCGS_TRY(check_splats(s, error));
     if (s->budget_text)
         ADCGS_TRY(adcgs_budget_parse(&s->budget, s->budget_text, error));
     if (s->config.conceal && !strcmp(s->input, "-"))
@@ -214,7 +257,7 @@ adcgs_status adcgs_dec_check(adcgs_dec_settings *s, adcgs_error *error)
     const int frames = s->output || s->request.camera || s->request.size[0] || s->md5 || s->verify || s->frametimes;
     if (s->bits % 8)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits %d: expected 8 or 16", s->bits);
-    if (!s->output && !s->md5 && !s->verify && !s->frametimes && !s->answer && !s->splats && !s->cameras && !s->play)
+    if (!s->output && !s->md5 && !s->verify && !s->frametimes && !s->answer && !s->splats.target && !s->cameras && !s->play)
         return adcgs_fail(error, ADCGS_ERR_USAGE,
                           "no output: give -o TARGET, --md5, --verify, --frametimes, --splats, --cameras, --answer or --play");
     const int renders = s->output || s->md5 || s->verify || s->frametimes;

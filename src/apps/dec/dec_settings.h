@@ -4,6 +4,7 @@
 #define ADCGS_APPS_DEC_DEC_SETTINGS_H
 
 #include "apps/dec/dec_budget.h"
+#include "apps/dec/dec_splats.h"
 #include "camera/path.h"
 #include "cli/cli.h"
 #include "media/operand.h"
@@ -11,12 +12,15 @@
 
 typedef struct adcgs_dec_settings {
     const adcgs_cli *cli;
-    const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script, *budget_text;
+    const char *input, *output, *format, *times, *verify, *answer, *beside, *cameras, *script, *budget_text;
+    const char *offset_text;
     adcgs_budget budget;
+    adcgs_dec_splats_config splats;
+    int axes, has_axes; /**< of splats; index into the option's words */
     adcgs_video_style video;
     adcgs_camera_path_request request;
     adcgs_config config;
-    int quiet, order, tiers, cpu, fit, half, rest_degree, stable, use_float, linear, bits, alpha, depth, md5, frametimes, play;
+    int quiet, order, tiers, cpu, fit, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     int has_sound_offset;
     char *sound;                         /**< file of the sound, found by adcgs_dec_find_sound(); the caller free()s it */
     double sound_offset;                 /**< time of the stream at which the sound begins, in seconds */

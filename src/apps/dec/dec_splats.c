@@ -7,29 +7,32 @@
 #include "apps/dec/dec_clip.h"
 #include "media/sink.h"
 #include "media/splats/offset.h"
-#include "media/splats/splats.h"
 #include "system/extension.h"
 #include "system/interrupt.h"
 #include "system/text.h"
 
 #include <adcgs/decoder.h>
 
+#include <math.h>
 #include <stdlib.h>
 #include <strings.h>
 
 static adcgs_status check_target(const adcgs_dec_splats_config *how, int has_many, adcgs_error *error)
 {
     const char *const target = how->target;
-    const adcgs_splats_style style = {.rest_degree = how->rest_degree};
     const int places = adcgs_pattern_places(target), is_clip = adcgs_dec_clip_is(target);
-    if (is_clip && (places || how->is_stable || how->rest_degree))
+    if ((is_clip || how->is_stable) && how->has_offset)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: --offset goes with a file for each time, without --stable", target);
+    if (is_clip && how->style.axes)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: --axes goes with a file for each time", target);
+    if (is_clip && (places || how->is_stable || how->style.rest_degree))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: one file has all times: expected no %s", target,
                           places           ? "number like %04d in the name"
                           : how->is_stable ? "--stable"
                                            : "--f-rest");
     if (is_clip)
         return ADCGS_OK;
-    ADCGS_TRY(adcgs_splats_check_name(target, &style, error));
+    ADCGS_TRY(adcgs_splats_check_name(target, &how->style, error));
     if (how->is_stable && (places != 1 || strcasecmp(adcgs_extension(target), "ply")))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: --stable writes PLY files, expected a name like time_%%05d.ply", target);
     if (places < 0 || places > 1)
@@ -52,15 +55,17 @@ static uint8_t axes_of(const adcgs_info *info)
     return ADCGS_SPLATS_UP_UNKNOWN;
 }
 
-static adcgs_status write_frame(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, double time, int rest_degree,
-                                const char *path, adcgs_error *error)
+static adcgs_status write_frame(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, double time,
+                                const adcgs_dec_splats_config *how, const char *path, adcgs_error *error)
 {
     adcgs_primitives primitives;
     adcgs_splats splats;
     char comment[128];
-    const adcgs_splats_style style = {.comment = comment, .rest_degree = rest_degree};
+    adcgs_splats_style style = how->style;
+    style.comment = comment;
     ADCGS_TRY(adcgs_get_primitives(decoder, time, &primitives, error));
-    ADCGS_TRY(adcgs_splats_take(&splats, &primitives, info->scene_origin, info->scene_scale, path, error));
+    ADCGS_TRY(adcgs_splats_take(&splats, &primitives, info->scene_origin, info->scene_scale, how->has_offset ? how->offset : NULL,
+                                path, error));
     splats.axes = axes_of(info);
     snprintf(comment, sizeof comment, "adcgs %s, time %.9g s", PACKAGE_VERSION, time);
     const adcgs_status status = adcgs_splats_write(&splats, &style, path, error);
@@ -71,31 +76,33 @@ static adcgs_status write_frame(uint32_t *n, adcgs_decoder *decoder, const adcgs
 
 /** One file of rows that are the same splats in each. */
 static adcgs_status write_row_frame(adcgs_splats *splats, const adcgs_dec_rows *rows, const adcgs_dec_span *span,
-                                    adcgs_decoder *decoder, double time, int rest_degree, const char *path, adcgs_error *error)
+                                    adcgs_decoder *decoder, double time, const adcgs_dec_splats_config *how, const char *path,
+                                    adcgs_error *error)
 {
     adcgs_primitives primitives;
     char comment[128];
-    const adcgs_splats_style style = {.comment = comment, .rest_degree = rest_degree};
+    adcgs_splats_style style = how->style;
+    style.comment = comment;
     ADCGS_TRY(adcgs_dec_rows_at(span, decoder, time, &primitives, path, error));
     adcgs_dec_rows_update(splats, rows, span, &primitives);
     snprintf(comment, sizeof comment, "adcgs %s, time %.9g s", PACKAGE_VERSION, time);
     return adcgs_splats_write(splats, &style, path, error);
 }
 
-static adcgs_status write_rows(const adcgs_dec_rows *rows, adcgs_decoder *decoder, const adcgs_dec_splats_config *how,
-                               const adcgs_camera_path *frames, adcgs_error *error)
+static adcgs_status write_rows(const adcgs_dec_rows *rows, adcgs_decoder *decoder, const adcgs_info *info,
+                               const adcgs_dec_splats_config *how, const adcgs_camera_path *frames, adcgs_error *error)
 {
     const size_t size = strlen(how->target) + 128;
     char *const path = malloc(size);
     adcgs_splats splats = {0};
     adcgs_status status = path ? adcgs_dec_rows_start(&splats, rows, how->target, error)
                                : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", how->target);
+    splats.axes = axes_of(info);
     for (size_t k = 0; k < rows->n; k++)
         for (int i = 0; i < rows->span[k].frames && status == ADCGS_OK && !adcgs_interrupted(); i++) {
             const int frame = rows->span[k].first + i;
             adcgs_pattern_format(how->target, frame, path, size);
-            status =
-                write_row_frame(&splats, rows, &rows->span[k], decoder, frames->frame[frame].time, how->rest_degree, path, error);
+            status = write_row_frame(&splats, rows, &rows->span[k], decoder, frames->frame[frame].time, how, path, error);
         }
     adcgs_splats_free(&splats);
     free(path);
@@ -109,25 +116,71 @@ static adcgs_status write_stable(uint32_t *n, adcgs_decoder *decoder, const adcg
     adcgs_status status = adcgs_dec_rows_find(&rows, decoder, info, frames, how->target, error);
     *n = rows.total;
     if (status == ADCGS_OK && !adcgs_interrupted())
-        status = write_rows(&rows, decoder, how, frames, error);
+        status = write_rows(&rows, decoder, info, how, frames, error);
     adcgs_dec_rows_free(&rows);
     return status;
 }
 
-/** Reports the offset, and its place in the file, if binary32 cannot hold positions in the world. */
-static void report_offset(const adcgs_cli *cli, const adcgs_info *info, const char *target)
+/** Reports that splats whose axes nobody knows are not turned. */
+static void report_axes(const adcgs_cli *cli, const adcgs_dec_splats_config *how, const adcgs_info *info)
+{
+    static const char *const words[] = {"", "y up", "z up", "y down"};
+    if (how->style.axes == ADCGS_SPLATS_KEEP || axes_of(info) != ADCGS_SPLATS_UP_UNKNOWN)
+        return;
+    adcgs_cli_note(cli, "%s: the stream's axes are unknown, expected %s: the splats are not turned; turn them in the viewer",
+                   how->target, words[adcgs_splats_axes_for(how->target, &how->style, ADCGS_SPLATS_Z_UP)]);
+}
+
+/** Reports the offset, and its place in the file. */
+static void report_offset(const adcgs_cli *cli, const adcgs_dec_splats_config *how, const adcgs_info *info,
+                          const double offset[3])
 {
     static const struct {
         const char *extension, *place;
     } formats[] = {{"glb", "the file's node adds it again"}, {"ply", "a comment of its header contains it"}};
-    const char *place = "add it again: the format cannot store it";
-    double offset[3];
-    if (!adcgs_offset_of(offset, info->scene_origin, info->scene_scale))
-        return;
+    const char *place = "the format cannot store it, so the place in the world is lost: add it again";
+    const uint8_t axes = axes_of(info);
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
-        place = strcasecmp(adcgs_extension(target), formats[i].extension) ? place : formats[i].place;
-    adcgs_cli_note(cli, "%s: the scene is too far from the origin for binary32: the offset %.17g %.17g %.17g is subtracted%s; %s",
-                   target, offset[0], offset[1], offset[2], place == formats[1].place ? "" : " (before y is turned up)", place);
+        place = strcasecmp(adcgs_extension(how->target), formats[i].extension) ? place : formats[i].place;
+    adcgs_cli_note(cli, "%s: the offset %.17g %.17g %.17g is subtracted from positions%s; %s", how->target, offset[0], offset[1],
+                   offset[2],
+                   adcgs_splats_axes_for(how->target, &how->style, axes) == axes ? "" : ", before the splats are turned", place);
+}
+
+/** Reports positions that are too coarse because the scene is still far from the origin. */
+static void report_rounding(const adcgs_cli *cli, const adcgs_dec_splats_config *how, const adcgs_info *info,
+                            const double offset[3])
+{
+    double left[3], advice[3], farthest = 0.0;
+    for (int a = 0; a < 3; a++) {
+        left[a] = info->scene_origin[a] - offset[a];
+        farthest = fmax(farthest, fabs(left[a]));
+    }
+    if (!adcgs_offset_of(advice, left, info->scene_scale))
+        return;
+    adcgs_offset_of(advice, info->scene_origin, info->scene_scale);
+    const int bits = strcasecmp(adcgs_extension(how->target), "spz") ? 23 : 22;
+    adcgs_cli_note(
+        cli,
+        "%s: positions are up to %g from the origin, so they are rounded to steps of about %g, and the scene's scale is "
+        "%g: give --offset %.17g,%.17g,%.17g",
+        how->target, farthest, exp2(floor(log2(farthest)) - bits), info->scene_scale, advice[0], advice[1], advice[2]);
+}
+
+/** Reports turns, offsets and roundings that a user may not expect. */
+static void report(const adcgs_cli *cli, const adcgs_dec_splats_config *given, const adcgs_info *info, int is_clip)
+{
+    adcgs_dec_splats_config plain = *given;
+    const adcgs_dec_splats_config *const how = is_clip ? &plain : given;
+    double offset[3];
+    plain.style.axes = ADCGS_SPLATS_KEEP; /* splats over time in one file are not turned */
+    adcgs_offset_of(offset, info->scene_origin, info->scene_scale);
+    if (how->has_offset)
+        memcpy(offset, how->offset, sizeof offset);
+    report_axes(cli, how, info);
+    if (adcgs_offset_is(offset))
+        report_offset(cli, how, info, offset);
+    report_rounding(cli, how, info, offset);
 }
 
 static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, const adcgs_dec_splats_config *how,
@@ -140,7 +193,7 @@ static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_i
     adcgs_status status = ADCGS_OK;
     for (int i = 0; i < frames->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
         adcgs_pattern_format(how->target, i, path, size);
-        status = write_frame(n, decoder, info, frames->frame[i].time, how->rest_degree, path, error);
+        status = write_frame(n, decoder, info, frames->frame[i].time, how, path, error);
     }
     free(path);
     return status;
@@ -173,7 +226,7 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
                                 : how->is_stable ? write_stable(&n, decoder, &info, how, &frames, error)
                                                  : write_all(&n, decoder, &info, how, &frames, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
-        report_offset(cli, &info, how->target);
+        report(cli, how, &info, is_clip);
     if (status == ADCGS_OK && !adcgs_interrupted() && !is_clip)
         adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, frames.n, frames.n == 1 ? "" : "s", n);
     adcgs_camera_path_free(&frames);

@@ -5,12 +5,15 @@
 
 #include "camera/path.h"
 #include "cli/cli.h"
+#include "media/splats/splats.h"
 
 /** Settings of the command line for splats. */
 typedef struct adcgs_dec_splats_config {
     const char *target;
-    int rest_degree; /**< see adcgs_splats_style */
-    int is_stable;   /**< row k is the same splat in all files */
+    int is_stable;            /**< row k is the same splat in all files */
+    adcgs_splats_style style; /**< without its comment */
+    int has_offset;
+    double offset[3]; /**< subtracted from positions, in the stream's axes; without has_offset, that of a far scene */
 } adcgs_dec_splats_config;
 
 /**

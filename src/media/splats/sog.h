@@ -6,8 +6,8 @@
  * colours as indices into codebooks of 256 (version 1: as steps between
  * bounds), harmonics as indices of centroids. From its text,
  * https://developer.playcanvas.com/user-manual/gaussian-splatting/formats/sog.
- * There y is up, but programs keep the axes of the PLY that they convert. So
- * axes are unknown after reading.
+ * There y is up, but programs keep the axes of the PLY that they convert, and
+ * show y down. So axes are unknown after reading, and y is down in our files.
  */
 #ifndef ADCGS_MEDIA_SPLATS_SOG_H
 #define ADCGS_MEDIA_SPLATS_SOG_H

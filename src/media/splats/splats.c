@@ -133,12 +133,15 @@ int adcgs_splats_take_one(adcgs_splats *out, uint32_t to, const adcgs_primitives
 }
 
 adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primitives, const double origin[3], double scale,
-                               const char *path, adcgs_error *error)
+                               const double *offset, const char *path, adcgs_error *error)
 {
     uint32_t n = 0;
     double near_by[3];
     ADCGS_TRY(adcgs_splats_alloc(out, primitives->n, path, error));
-    adcgs_offset_of(out->offset, origin, scale);
+    if (offset)
+        memcpy(out->offset, offset, sizeof out->offset);
+    else
+        adcgs_offset_of(out->offset, origin, scale);
     for (int a = 0; a < 3; a++)
         near_by[a] = origin[a] - out->offset[a];
     for (uint32_t i = 0; i < primitives->n; i++)

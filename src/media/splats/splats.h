@@ -23,7 +23,13 @@
 #define ADCGS_SPLATS_NAMES ".ply, .spz, .glb or .sog"                /**< extensions of file names, for messages */
 
 /** World axes, right-handed: codes of adcgs_stream. */
-enum { ADCGS_SPLATS_UP_UNKNOWN, ADCGS_SPLATS_Y_UP, ADCGS_SPLATS_Z_UP, ADCGS_SPLATS_Y_DOWN };
+enum {
+    ADCGS_SPLATS_UP_UNKNOWN,
+    ADCGS_SPLATS_Y_UP,
+    ADCGS_SPLATS_Z_UP,
+    ADCGS_SPLATS_Y_DOWN,
+    ADCGS_SPLATS_KEEP /**< of a style alone: the splats' own */
+};
 
 /**
  * Arrays as in adcgs_primitives, but in world units. They are 64-byte aligned and padded to a multiple of 64 splats; padding has
@@ -55,12 +61,12 @@ adcgs_status adcgs_splats_join(adcgs_splats *out, const adcgs_splats *parts, siz
 /** Point the renderer's primitives at the splats, without a copy. */
 void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out);
 /**
- * A decoder's primitives in world units, world = origin + scale * scene, less the offset of a far origin
+ * A decoder's primitives in world units, world = origin + scale * scene, less the offset; NULL: that of a far origin
  * (media/splats/offset.h). Invisible primitives are dropped: those of opacity 0, or too far out for binary32. The others keep
  * their order.
  */
 adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primitives, const double origin[3], double scale,
-                               const char *path, adcgs_error *error);
+                               const double *offset, const char *path, adcgs_error *error);
 
 /**
  * Copy one primitive to index `to`, world = origin + scale * scene. \return true if it is visible and can be stored; else `to`
@@ -85,13 +91,21 @@ adcgs_status adcgs_splats_parse(adcgs_splats *out, const uint8_t *data, size_t b
 typedef struct adcgs_splats_style {
     const char *comment; /**< a line without its newline, for formats that can store one */
     int rest_degree;     /**< 1..3: PLY gets f_rest_* up to this degree, all zero, for programs that require them; 0: none */
+    int spz_version;     /**< 2 to 4: version of SPZ; 0: 4 */
+    uint8_t axes;        /**< ADCGS_SPLATS_Y_UP... of the written splats; 0: those of the format */
 } adcgs_splats_style;
 
 /** ADCGS_ERR_USAGE if the extension, in upper or lower case, is of no format that supports this style. */
 adcgs_status adcgs_splats_check_name(const char *path, const adcgs_splats_style *style, adcgs_error *error);
 /**
- * Write a file in the format of its extension; only colours of degree 0 are written. If the format defines an up axis, splats
- * with known axes are turned to it. An offset becomes the translation of GLB's node, or a comment "offset X Y Z" of PLY; SPZ and
+ * The axes that a file of this name and style gets from splats with these axes. Unknown ones, and ADCGS_SPLATS_KEEP, change
+ * nothing. By default y is up in SPZ and GLB, which define it. In PLY and SOG y is down: viewers (SuperSplat, splat-transform)
+ * take files without defined axes so.
+ */
+uint8_t adcgs_splats_axes_for(const char *path, const adcgs_splats_style *style, uint8_t axes);
+/**
+ * Write a file in the format of its extension; only colours of degree 0 are written. Splats are turned about x to the axes of
+ * adcgs_splats_axes_for(), and so is their offset. An offset becomes the translation of GLB's node, or a comment "offset X Y Z" of PLY; SPZ and
  * SOG cannot store it. Atomic.
  */
 adcgs_status adcgs_splats_write(const adcgs_splats *splats, const adcgs_splats_style *style, const char *path,

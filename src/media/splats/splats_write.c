@@ -18,10 +18,18 @@ typedef adcgs_status (*put_fn)(const adcgs_splats *splats, const adcgs_splats_st
 static const struct {
     const char *extension;
     put_fn put;
-    int turns; /**< files have y up; splats with known axes are turned */
-} formats[] = {{"ply", adcgs_splats_put_ply, 0}, {"spz", adcgs_spz_put, 1}, {"glb", adcgs_glb_put, 1}, {"sog", adcgs_sog_put, 1}};
+    uint8_t axes; /**< SPZ and GLB define theirs; programs show PLY and SOG with y down */
+} formats[] = {{"ply", adcgs_splats_put_ply, ADCGS_SPLATS_Y_DOWN},
+               {"spz", adcgs_spz_put, ADCGS_SPLATS_Y_UP},
+               {"glb", adcgs_glb_put, ADCGS_SPLATS_Y_UP},
+               {"sog", adcgs_sog_put, ADCGS_SPLATS_Y_DOWN}};
 
+#define SQRT_HALF 0.70710678118654752 /* cosine and sine of half a quarter turn; arithmetic */
 #define FORMATS (sizeof formats / sizeof *formats)
+
+/** Quarter turns about x from these axes to y up. */
+static const int to_y_up[] =
+    {[ADCGS_SPLATS_UP_UNKNOWN] = 0, [ADCGS_SPLATS_Y_UP] = 0, [ADCGS_SPLATS_Z_UP] = 3, [ADCGS_SPLATS_Y_DOWN] = 2};
 
 /** Index of a file name's format; FORMATS for an unknown one. */
 static size_t format_of(const char *path)
@@ -39,43 +47,52 @@ adcgs_status adcgs_splats_check_name(const char *path, const adcgs_splats_style 
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name of splats must end in " ADCGS_SPLATS_NAMES, path);
     if (style->rest_degree && formats[format].put != adcgs_splats_put_ply)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: only PLY has f_rest_*", path);
+    if (style->spz_version && formats[format].put != adcgs_spz_put)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: only SPZ has a version to choose", path);
     return ADCGS_OK;
 }
 
-/** The rotation from these axes to y up, a quarter or half turn about x: w and x of its quaternion. */
-static void turn_of(double turn[2], int axes)
+uint8_t adcgs_splats_axes_for(const char *path, const adcgs_splats_style *style, uint8_t axes)
 {
-    turn[0] = axes == ADCGS_SPLATS_Z_UP ? 0.70710678118654752 : 0.0;
-    turn[1] = axes == ADCGS_SPLATS_Z_UP ? -0.70710678118654752 : 1.0;
+    const size_t format = format_of(path);
+    if (axes == ADCGS_SPLATS_UP_UNKNOWN || style->axes == ADCGS_SPLATS_KEEP || format == FORMATS)
+        return axes;
+    return style->axes ? style->axes : formats[format].axes;
 }
 
-/** A turned copy, without harmonics, since no format writes them. */
-static adcgs_status turn_up(adcgs_splats *out, const adcgs_splats *s, const char *path, adcgs_error *error)
+/** A point after this number of quarter turns about x. */
+static void turn_point(double to[3], const double from[3], int quarters)
 {
-    double t[2];
+    const double y[4] = {from[1], -from[2], -from[1], from[2]}, z[4] = {from[2], from[1], -from[2], -from[1]};
+    to[0] = from[0];
+    to[1] = y[quarters];
+    to[2] = z[quarters];
+}
+
+/** A copy turned by quarters about x, without harmonics, since no format writes them. */
+static adcgs_status turn_copy(adcgs_splats *out, const adcgs_splats *s, int quarters, const char *path, adcgs_error *error)
+{
+    static const double turns[4][2] = {{1.0, 0.0}, {SQRT_HALF, SQRT_HALF}, {0.0, 1.0}, {SQRT_HALF, -SQRT_HALF}}; /* w, x */
+    const double *const t = turns[quarters];
     ADCGS_TRY(adcgs_splats_alloc(out, s->n, path, error));
-    turn_of(t, s->axes);
     for (uint32_t i = 0; i < s->n; i++) {
         const double q[4] = {(double)s->rotation[0][i], (double)s->rotation[1][i], (double)s->rotation[2][i],
                              (double)s->rotation[3][i]};
-        const int quarter = s->axes == ADCGS_SPLATS_Z_UP;
-        out->mean[0][i] = s->mean[0][i];
-        out->mean[1][i] = quarter ? s->mean[2][i] : -s->mean[1][i];
-        out->mean[2][i] = quarter ? -s->mean[1][i] : -s->mean[2][i];
+        const double mean[3] = {(double)s->mean[0][i], (double)s->mean[1][i], (double)s->mean[2][i]};
+        double turned[3];
+        turn_point(turned, mean, quarters);
         out->rotation[0][i] = (float)(t[0] * q[0] - t[1] * q[1]);
         out->rotation[1][i] = (float)(t[0] * q[1] + t[1] * q[0]);
         out->rotation[2][i] = (float)(t[0] * q[2] - t[1] * q[3]);
         out->rotation[3][i] = (float)(t[0] * q[3] + t[1] * q[2]);
         out->opacity[i] = s->opacity[i];
         for (int a = 0; a < 3; a++) {
+            out->mean[a][i] = (float)turned[a];
             out->scale[a][i] = s->scale[a][i];
             out->colour[a][i] = s->colour[a][i];
         }
     }
-    out->offset[0] = s->offset[0];
-    out->offset[1] = s->axes == ADCGS_SPLATS_Z_UP ? s->offset[2] : -s->offset[1];
-    out->offset[2] = s->axes == ADCGS_SPLATS_Z_UP ? -s->offset[1] : -s->offset[2];
-    out->axes = ADCGS_SPLATS_Y_UP;
+    turn_point(out->offset, s->offset, quarters);
     out->antialiased = s->antialiased;
     return ADCGS_OK;
 }
@@ -86,12 +103,14 @@ adcgs_status adcgs_splats_write(const adcgs_splats *splats, const adcgs_splats_s
     adcgs_splats turned = {0};
     ADCGS_TRY(adcgs_splats_check_name(path, style, error));
     const size_t format = format_of(path);
-    const int turns = formats[format].turns && (splats->axes == ADCGS_SPLATS_Z_UP || splats->axes == ADCGS_SPLATS_Y_DOWN);
-    if (turns)
-        ADCGS_TRY(turn_up(&turned, splats, path, error));
+    const uint8_t axes = adcgs_splats_axes_for(path, style, splats->axes);
+    const int quarters = (4 + to_y_up[splats->axes] - to_y_up[axes]) % 4;
+    if (quarters)
+        ADCGS_TRY(turn_copy(&turned, splats, quarters, path, error));
+    turned.axes = axes;
     adcgs_status status = adcgs_atomic_open(&atomic, path, error);
     if (status == ADCGS_OK) {
-        status = formats[format].put(turns ? &turned : splats, style, atomic.file, path, error);
+        status = formats[format].put(quarters ? &turned : splats, style, atomic.file, path, error);
         if (status == ADCGS_OK)
             status = adcgs_atomic_commit(&atomic, error);
         else

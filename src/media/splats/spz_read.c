@@ -21,7 +21,6 @@ int adcgs_spz_is(const uint8_t *data, size_t bytes)
 #include <zstd.h>
 
 /* Origin, unless a line states one: definition (SPZ, whose text spz.h names). */
-#define OLD_HEADER 16                  /* of versions 2 and 3, packed together with the columns */
 #define GZIP_RATIO 1032                /* upper bound of deflate's compression ratio; literature (zlib's documentation) */
 #define ZSTD_RATIO ((uint64_t)1 << 17) /* above zstd's ratio: a block of 128 KiB takes four bytes; RFC 8878, arithmetic */
 #define INPUT_PART ((size_t)1 << 30)   /* bytes passed to zlib at once; chosen by hand, not measured */
@@ -136,7 +135,7 @@ static adcgs_status take_header(reader *r, const uint8_t *header)
 
 static adcgs_status open_old(reader *r)
 {
-    uint8_t header[OLD_HEADER];
+    uint8_t header[ADCGS_SPZ_OLD_HEADER];
     size_t total = 0;
     const size_t bytes = (size_t)(r->end - r->at);
     if (inflateInit2(&r->gzip, 16 + MAX_WBITS) != Z_OK)

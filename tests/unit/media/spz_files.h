@@ -35,6 +35,29 @@ static inline void near_splats(const adcgs_splats *a, const adcgs_splats *b, int
     }
 }
 
+static inline adcgs_status write_version(const adcgs_splats *s, int version, const char *path)
+{
+    return adcgs_splats_write(s, &(adcgs_splats_style){.comment = "here", .spz_version = version}, path, &error);
+}
+
+/** Expects the same splats, read from files of the versions 2 to 4, except for the coarser rotations of version 2. */
+static inline void expect_versions(const adcgs_splats *two, const adcgs_splats *three, const adcgs_splats *four,
+                                   const adcgs_splats *s)
+{
+    for (uint32_t i = 0; i < s->n; i++) {
+        for (int a = 0; a < 3; a++) {
+            assert_true(three->mean[a][i] == four->mean[a][i] && two->mean[a][i] == four->mean[a][i]);
+            assert_true(two->scale[a][i] == four->scale[a][i] && two->colour[a][i] == four->colour[a][i]);
+        }
+        assert_true(two->opacity[i] == four->opacity[i]);
+        const float sign = s->rotation[0][i] < 0.0f ? -1.0f : 1.0f;
+        for (int a = 0; a < 4; a++) {
+            assert_true(three->rotation[a][i] == four->rotation[a][i]);
+            near(two->rotation[a][i], sign * s->rotation[a][i], 0.0, a ? 0.012 : 0.12);
+        }
+    }
+}
+
 /** Writes a file packed by gzip. */
 static inline size_t put_gzip(const char *name, const uint8_t *raw, size_t bytes)
 {

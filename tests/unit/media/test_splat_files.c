@@ -184,7 +184,7 @@ static void test_far(void **state)
     adcgs_primitives p;
     double nowhere[3];
     adcgs_splats_primitives(&model, &p);
-    expect_good(adcgs_splats_take(&s, &p, origin, 10.0, "far", &error));
+    expect_good(adcgs_splats_take(&s, &p, origin, 10.0, NULL, "far", &error));
     assert_int_equal(s.n, model.n);
     for (int a = 0; a < 3; a++)
         assert_true(fabs(s.offset[a] - origin[a]) <= 4.0 && s.offset[a] == 8.0 * rint(s.offset[a] / 8.0));
@@ -309,7 +309,7 @@ static double middle(int antialiased, double across, double down, double distanc
         scene.splats.scale[a][0] = (float)((a ? down : across) * distance / 100.0);
         scene.splats.colour[a][0] = 1.0f;
     }
-    expect_good(adcgs_splat_scene_render(&scene, black, &camera, &image, "one", &error));
+    expect_good(adcgs_splat_scene_render(&scene, black, &camera, 0.0, &image, "one", &error));
     const double value = (double)image.data[3 * (16 * 33 + 16)];
     adcgs_image_free(&image);
     adcgs_splats_free(&scene.splats);

@@ -37,6 +37,45 @@ static void test_round_trip(void **state)
     }
 }
 
+/**
+ * Old versions are one gzip stream. Version 3 differs from 4 in its container alone. Version 2 rounds x, y, z to 1/127.5; their
+ * errors add up in w.
+ */
+static void test_versions(void **state)
+{
+    adcgs_splats s = random_splats(70000, 30.0, -500.0, 3), three, four, two; /* more than one part of gzip's output */
+    size_t bytes;
+    s.antialiased = 1;
+    expect_good(write_version(&s, 4, in("w4.spz")));
+    expect_good(write_splats(&s, in("w.spz")));
+    uint8_t *const by_default = load_file("w.spz", &bytes), *const chosen = load_file("w4.spz", &bytes);
+    assert_memory_equal(by_default, chosen, bytes);
+    free(by_default);
+    free(chosen);
+    expect_good(write_version(&s, 3, in("w3.spz")));
+    expect_good(write_version(&s, 2, in("w2.spz")));
+    uint8_t *const old = load_file("w3.spz", &bytes);
+    assert_memory_equal(old, "\x1f\x8b\x08\0\0\0\0\0", 8); /* no name and no time, so files do not depend on them */
+    free(old);
+    expect_good(adcgs_splats_read(&four, in("w4.spz"), &error));
+    expect_good(adcgs_splats_read(&three, in("w3.spz"), &error));
+    expect_good(adcgs_splats_read(&two, in("w2.spz"), &error));
+    assert_true(three.n == s.n && two.n == s.n && three.antialiased && two.antialiased);
+    near_splats(&three, &s, 13);
+    expect_versions(&two, &three, &four, &s);
+    adcgs_splats_free(&two);
+    adcgs_splats_free(&three);
+    adcgs_splats_free(&four);
+    for (int version = 2; version <= 3; version++) {
+        s.n = 1;
+        expect_good(write_version(&s, version, in("one.spz")));
+        s.n = 0;
+        expect_error(write_version(&s, version, in("none.spz")), ADCGS_ERR_UNSUPPORTED, "none.spz", "at least one splat");
+    }
+    expect_error(write_version(&s, 3, in("w.ply")), ADCGS_ERR_USAGE, "w.ply", "only SPZ");
+    adcgs_splats_free(&s);
+}
+
 /** Values outside the format's ranges are clamped. A position that does not fit is an error. */
 static void test_ranges(void **state)
 {
@@ -279,37 +318,6 @@ static void test_mutations(void **state)
     }
 }
 
-/* ---- The up direction ---- */
-
-/** The tip of a splat's longest axis is the same place in the world before and after the conversion to y up. */
-static void test_up(void **state)
-{
-    static const uint8_t axes[] = {ADCGS_SPLATS_UP_UNKNOWN, ADCGS_SPLATS_Y_UP, ADCGS_SPLATS_Z_UP, ADCGS_SPLATS_Y_DOWN};
-    for (size_t k = 0; k < sizeof axes; k++) {
-        adcgs_splats s = random_splats(50, 1.0, 0.0, 21), back;
-        s.axes = axes[k];
-        expect_good(write_splats(&s, in("up.spz")));
-        expect_good(adcgs_splats_read(&back, in("up.spz"), &error));
-        for (uint32_t i = 0; i < s.n; i++)
-            for (int axis = 0; axis < 3; axis++) {
-                double was[3], is[3];
-                tip(was, &s, i, axis);
-                tip(is, &back, i, axis);
-                const double turned[3] = {was[0],
-                                          axes[k] == ADCGS_SPLATS_Z_UP     ? was[2]
-                                          : axes[k] == ADCGS_SPLATS_Y_DOWN ? -was[1]
-                                                                           : was[1],
-                                          axes[k] == ADCGS_SPLATS_Z_UP || axes[k] == ADCGS_SPLATS_Y_DOWN
-                                              ? -was[axes[k] == ADCGS_SPLATS_Z_UP ? 1 : 2]
-                                              : was[2]};
-                for (int a = 0; a < 3; a++)
-                    near((float)is[a], (float)turned[a], 0.0, 0.01);
-            }
-        adcgs_splats_free(&s);
-        adcgs_splats_free(&back);
-    }
-}
-
 /* ---- Files of other programs ---- */
 
 static void test_biker(void **state)
@@ -363,10 +371,17 @@ static void test_splat_transform(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_ranges),          cmocka_unit_test(test_old),
-        cmocka_unit_test(test_bad),        cmocka_unit_test(test_bad_streams),     cmocka_unit_test(test_bad_old),
-        cmocka_unit_test(test_extensions), cmocka_unit_test(test_mutations),       cmocka_unit_test(test_up),
-        cmocka_unit_test(test_biker),      cmocka_unit_test(test_splat_transform),
+        cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_old),
+        cmocka_unit_test(test_versions),
+        cmocka_unit_test(test_bad),
+        cmocka_unit_test(test_bad_streams),
+        cmocka_unit_test(test_bad_old),
+        cmocka_unit_test(test_extensions),
+        cmocka_unit_test(test_mutations),
+        cmocka_unit_test(test_biker),
+        cmocka_unit_test(test_splat_transform),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

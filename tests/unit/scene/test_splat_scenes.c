@@ -58,7 +58,7 @@ static void test_take(void **state)
     adcgs_primitives p;
     adcgs_splats s;
     assert_int_equal(adcgs_get_primitives(f->decoder, 0.5 * f->info.time_end, &p, NULL), ADCGS_OK);
-    expect_good(adcgs_splats_take(&s, &p, f->info.scene_origin, f->info.scene_scale, "taken", &error));
+    expect_good(adcgs_splats_take(&s, &p, f->info.scene_origin, f->info.scene_scale, NULL, "taken", &error));
     uint32_t n = 0;
     for (uint32_t i = 0; i < p.n; i++) {
         if (p.opacity[i] == 0.0f)
@@ -179,7 +179,7 @@ static void test_export(void **state)
     adcgs_primitives p;
     adcgs_splats s;
     assert_int_equal(adcgs_get_primitives(f->decoder, 0.04, &p, NULL), ADCGS_OK);
-    expect_good(adcgs_splats_take(&s, &p, f->info.scene_origin, f->info.scene_scale, "e.ply", &error));
+    expect_good(adcgs_splats_take(&s, &p, f->info.scene_origin, f->info.scene_scale, NULL, "e.ply", &error));
     expect_good(write_splats(&s, in("e.ply")));
     adcgs_splats_free(&s);
     adcgs_scene *scene = open_splats(in("e.ply"));
