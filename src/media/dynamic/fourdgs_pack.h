@@ -43,7 +43,10 @@ static inline void adcgs_put_string(FILE *to, const char *text)
     fputs(text, to);
 }
 
-/** Set the rows of the next frame, and w->moved to the splats that differ from the frame before, or to all. \return their number */
+/**
+ * Set the rows of the next frame, and w->moved to the splats that differ from the frame before, or to all.
+ * \return their number
+ */
 uint32_t adcgs_fourdgs_next_rows(adcgs_fourdgs_writer *w, uint32_t frame, int is_delta);
 /** Put the streams of the n splats in w->moved: all attributes, or differences of those that change. */
 void adcgs_fourdgs_put_splats(FILE *to, adcgs_fourdgs_writer *w, uint32_t n, int is_delta);

@@ -105,8 +105,8 @@ adcgs_status adcgs_splats_check_name(const char *path, const adcgs_splats_style 
 uint8_t adcgs_splats_axes_for(const char *path, const adcgs_splats_style *style, uint8_t axes);
 /**
  * Write a file in the format of its extension; only colours of degree 0 are written. Splats are turned about x to the axes of
- * adcgs_splats_axes_for(), and so is their offset. An offset becomes the translation of GLB's node, or a comment "offset X Y Z" of PLY; SPZ and
- * SOG cannot store it. Atomic.
+ * adcgs_splats_axes_for(), and so is their offset. An offset becomes the translation of GLB's node, or a comment "offset X Y
+ * Z" of PLY; SPZ and SOG cannot store it. Atomic.
  */
 adcgs_status adcgs_splats_write(const adcgs_splats *splats, const adcgs_splats_style *style, const char *path,
                                 adcgs_error *error);

@@ -46,9 +46,9 @@ int adcgs_spz_is(const uint8_t *data, size_t bytes);
 adcgs_status adcgs_spz_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 /**
  * Write the style's version to an open file; the caller checks it for errors. Positions get as many fractional bits as the
- * farthest one allows. Version 2 rounds x, y and z of rotations to steps of 1/127.5; w follows from them, and is up to 0.12 off
- * where it is near 0. Scales outside 4.54e-5 to 380 and colours outside -0.44 to 1.44 are clamped. ADCGS_ERR_UNSUPPORTED for zero splats, for
- * positions beyond 2^23, and in a build without zlib and zstd.
+ * farthest one allows. Version 2 rounds x, y and z of rotations to steps of 1/127.5; w follows from them, and is up to 0.12
+ * off where it is near 0. Scales outside 4.54e-5 to 380 and colours outside -0.44 to 1.44 are clamped. ADCGS_ERR_UNSUPPORTED
+ * for zero splats, for positions beyond 2^23, and in a build without zlib and zstd.
  */
 adcgs_status adcgs_spz_put(const adcgs_splats *splats, const adcgs_splats_style *style, FILE *file, const char *path,
                            adcgs_error *error);
