@@ -16,7 +16,7 @@ at_least()
 tiny_stream 30
 s=$dir/s.adcgs
 mkdir "$dir/rows"
-expect 0 "files" ./adcgs-dec "$s" --splats "$dir/rows/time_%05d.ply" --stable --f-rest 3
+expect 0 "files" ./adcgs-dec "$s" --splats "$dir/rows/time_%05d.ply" --stable --f-rest 3 --axes keep
 ./adcgs-dec "$s" --md5 >"$dir/md5" 2>/dev/null
 [ "$(find "$dir/rows" -name 'time_0*.ply' | wc -l)" -eq "$(wc -l <"$dir/md5")" ] || bad "not one file for each frame"
 [ "$(cat "$dir"/rows/*.ply | grep -a '^element vertex' | sort -u | wc -l)" -eq 1 ] || bad "files have different numbers of rows"
@@ -39,7 +39,17 @@ for format in ftgs.ply splatv; do
     expect 0 "1 file, 1 frames" ./adcgs-dec "$s" --splats "$dir/one.$format" --time 0.1
     expect 3 "no/x.$format" ./adcgs-dec "$s" --splats "$dir/no/x.$format"
 done
+for format in splat4d 4dgs; do
+    grep -q "define HAVE_SPZ" config.h || continue # zlib and zstd
+    expect 0 "1 file, .* frames of .* splats" ./adcgs-dec "$s" --splats "$dir/a.$format"
+    expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/b.$format" --threads 1 --cpu scalar
+    cmp -s "$dir/a.$format" "$dir/b.$format" || bad "$format depends on threads or CPU"
+    at_least 35 "$dir/a.$format"
+    expect 2 "one file has all times" ./adcgs-dec "$s" --splats "$dir/x.$format" --stable
+done
+expect 2 "--axes goes with" ./adcgs-dec "$s" --splats "$dir/x.4dgs" --axes z-up
+expect 2 "--offset goes with" ./adcgs-dec "$s" --splats "$dir/x%d.ply" --stable --offset 1,2,3
 expect 2 "--stable writes PLY files" ./adcgs-dec "$s" --splats "$dir/x%d.spz" --stable
 expect 2 "--stable writes PLY files" ./adcgs-dec "$s" --splats "$dir/x.ply" --stable
-expect 2 "--stable needs --splats" ./adcgs-dec "$s" --md5 --stable
+expect 2 "--stable, .* need --splats" ./adcgs-dec "$s" --md5 --stable
 exit $failed

@@ -5,6 +5,7 @@
 #include "apps/dec/dec_splats.h"
 
 #include "apps/dec/dec_clip.h"
+#include "apps/dec/dec_packed.h"
 #include "media/sink.h"
 #include "media/splats/offset.h"
 #include "system/extension.h"
@@ -17,10 +18,16 @@
 #include <stdlib.h>
 #include <strings.h>
 
+/** True for a format with all times in one file. */
+static int is_one_file(const char *target)
+{
+    return adcgs_dec_clip_is(target) || adcgs_dec_packed_is(target);
+}
+
 static adcgs_status check_target(const adcgs_dec_splats_config *how, int has_many, adcgs_error *error)
 {
     const char *const target = how->target;
-    const int places = adcgs_pattern_places(target), is_clip = adcgs_dec_clip_is(target);
+    const int places = adcgs_pattern_places(target), is_clip = is_one_file(target);
     if ((is_clip || how->is_stable) && how->has_offset)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: --offset goes with a file for each time, without --stable", target);
     if (is_clip && how->style.axes)
@@ -202,7 +209,7 @@ static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_i
 adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input, const adcgs_dec_splats_config *how,
                               const adcgs_camera_path_request *request, adcgs_error *error)
 {
-    const int is_clip = adcgs_dec_clip_is(how->target);
+    const int is_clip = is_one_file(how->target);
     adcgs_info info;
     adcgs_camera_path frames;
     uint32_t n = 0;
@@ -222,11 +229,15 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
                        "s",
                        input, frames.outside, frames.n, adcgs_s((uint64_t)frames.n), frames.outside == 1 ? "shows" : "show",
                        info.time_start, info.time_end);
-    const adcgs_status status = is_clip          ? adcgs_dec_clip_write(cli, decoder, &info, &frames, input, how->target, error)
+    const adcgs_status status = adcgs_dec_packed_is(how->target)
+                                    ? adcgs_dec_packed_write(&n, decoder, &info, &frames, how->target, error)
+                                : is_clip        ? adcgs_dec_clip_write(cli, decoder, &info, &frames, input, how->target, error)
                                 : how->is_stable ? write_stable(&n, decoder, &info, how, &frames, error)
                                                  : write_all(&n, decoder, &info, how, &frames, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         report(cli, how, &info, is_clip);
+    if (status == ADCGS_OK && !adcgs_interrupted() && adcgs_dec_packed_is(how->target))
+        adcgs_cli_note(cli, "%s: 1 file, %d frames of %u splats", input, frames.n, n);
     if (status == ADCGS_OK && !adcgs_interrupted() && !is_clip)
         adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, frames.n, frames.n == 1 ? "" : "s", n);
     adcgs_camera_path_free(&frames);
