@@ -16,7 +16,7 @@ for t in 0 0.02 0.04; do
     expect 0 "" ./examples/splat_buffer "$s" "$dir/splats.bin" $t
     n=$(sed -n 's/ splats, 64 bytes each$//p' "$dir/out")
     [ "$n" -gt 0 ] && [ "$(wc -c <"$dir/splats.bin")" -eq $((64 * n)) ] || bad "$n splats and the size of their buffer"
-    expect 0 "" ./adcgs-dec "$s" --splats "$dir/splats.ply" --time $t
+    expect 0 "" ./adcgs-dec "$s" --splats "$dir/splats.ply" --axes keep --time $t
     od -An -v -tf4 -w64 "$dir/splats.bin" | awk '{ print $1, $2, $3, $12, $9, $10, $11 }' >"$dir/found"
     sed '1,/^end_header$/d' "$dir/splats.ply" | od -An -v -tf4 -w68 | awk '{ print $1, $2, $3, $14, $15, $16, $17 }' >"$dir/wanted"
     cmp "$dir/found" "$dir/wanted" || bad "the splats at $t s"
@@ -52,7 +52,7 @@ grep -q "^$(wc -c <"$s") bytes: can be rendered up to 0.12 s" "$dir/out" || { ba
 [ "$(wc -l <"$dir/out")" -ge 4 ] || bad "too few images"
 # A fault keeps the image of the part before it.
 rm "$dir/frame.ppm"
-{ head -c 2279 "$s"; head -c 4000 /dev/zero; } >"$dir/bad.adcgs"
-expect 1 "byte 2279: checksum" ./examples/push_frames "$dir/frame.ppm" <"$dir/bad.adcgs"
+{ head -c 2276 "$s"; head -c 4000 /dev/zero; } >"$dir/bad.adcgs"
+expect 1 "byte 2276: checksum" ./examples/push_frames "$dir/frame.ppm" <"$dir/bad.adcgs"
 [ -s "$dir/frame.ppm" ] || bad "no image before the fault"
 exit $failed

@@ -74,7 +74,7 @@ static adcgs_splat_state *choose_state(adcgs_splat_scene *s, double time)
     return oldest;
 }
 
-/** Borrows the state of a time until give_back(). It is read under the lock: readers of other times wait, which keeps memory low. */
+/** Borrows the state of a time until give_back(). It is read under the lock: others wait, which keeps memory low. */
 static adcgs_status borrow(adcgs_splat_state **out, adcgs_splat_scene *s, double time, adcgs_error *error)
 {
     adcgs_status status = ADCGS_OK;

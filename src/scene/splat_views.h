@@ -35,10 +35,10 @@ void adcgs_splat_scene_free(adcgs_splat_scene **splats);
 void adcgs_splat_scene_normalise(const adcgs_splat_scene *scene, adcgs_splats *splats);
 
 /**
- * Renders the splats at a time, in seconds, for a camera over a background: three channels, values clipped to [0,1]. Colours depend on the viewing
- * direction, and are at least 0. For splats trained with antialiasing, opacity is scaled by sqrt(det S / det(S + 0.3 I)), where
- * S is the covariance in the image in pixels^2: the filter enlarges a splat, and must not make it stronger. Any thread may
- * call; path is for messages.
+ * Renders the splats at a time, in seconds, for a camera over a background: three channels, values clipped to [0,1]. Colours
+ * depend on the viewing direction, and are at least 0. For splats trained with antialiasing, opacity is scaled by sqrt(det S /
+ * det(S + 0.3 I)), where S is the covariance in the image in pixels^2: the filter enlarges a splat, and must not make it
+ * stronger. Any thread may call; path is for messages.
  */
 adcgs_status adcgs_splat_scene_render(adcgs_splat_scene *scene, const float background[3], const adcgs_camera *camera,
                                       double time, adcgs_image *out, const char *path, adcgs_error *error);

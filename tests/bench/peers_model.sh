@@ -80,7 +80,7 @@ splats()
     coder=tests/bench/adcgs-bench-draco
     ./adcgs-info "$out/whole.adcgs" --json >"$out/info.json"
     choose_moment
-    ./adcgs-dec "$out/whole.adcgs" --splats "$out/splats.ply" -t "$at" -q
+    ./adcgs-dec "$out/whole.adcgs" --splats "$out/splats.ply" --axes keep -t "$at" -q
     method=PLY
     { echo $columns; splats_row "$(wc -c <"$out/splats.ply")" "$out/splats.ply" 0; } >"$out/ply.csv"
     cat "$out/ply.csv"

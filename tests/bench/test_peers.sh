@@ -87,7 +87,7 @@ done
 sed 's/^{/{ "ply_file_path": "points.ply",/' "$dir/still/transforms_train.json" >"$dir/with" &&
     mv "$dir/with" "$dir/still/transforms_train.json"
 ./adcgs-enc "$dir/still" -o "$dir/t.adcgs" --preset draft --set matching_frames=0 -n 40 --threads 2 -q || bad "adcgs-enc"
-./adcgs-dec "$dir/t.adcgs" --splats "$dir/ours.ply" -q || bad "adcgs-dec --splats"
+./adcgs-dec "$dir/t.adcgs" --splats "$dir/ours.ply" --axes keep -q || bad "adcgs-dec --splats"
 mkdir "$dir/bin"
 cat >"$dir/bin/opensplat" <<'END'
 #!/bin/sh

@@ -80,7 +80,7 @@ class Streams(unittest.TestCase):
                 time = stream.info.time_end
                 splats = stream.splats(time)
                 slots = stream.splats(time, units="scene", draws_nothing=True)
-            dec(path, "--splats", out / "splats.ply", "--time", repr(time), "--quiet")
+            dec(path, "--splats", out / "splats.ply", "--axes", "keep", "--time", repr(time), "--quiet")
             theirs = ply(out / "splats.ply")
             self.assertGreater(len(splats.means), 0)
             for i, name in enumerate("xyz"):

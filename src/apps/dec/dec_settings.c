@@ -43,7 +43,8 @@ static void add_splat_options(adcgs_option_table *out, adcgs_dec_settings *s)
     const adcgs_option table[] = {
         {"splats", 0, ADCGS_OPTION_FILE, &s->splats.target, 0, 0, "FILE",
          "target of splats instead of frames, as .ply, .spz, .glb or .sog:\n"
-         "out.ply for one time (default: the first), out%04d.ply for a\nrange of times; all times in one file: .ftgs.ply,\n.splatv, .splat4d, .4dgs",
+         "out.ply for one time (default: the first), out%04d.ply for a\nrange of times; all times in one file: .ftgs.ply,\n"
+         ".splatv, .splat4d, .4dgs",
          NULL, NULL},
         {"stable", 0, ADCGS_OPTION_FLAG, &s->splats.is_stable, 0, 0, NULL,
          "with --splats time_%05d.ply: row k is the same splat in all files", NULL, NULL},

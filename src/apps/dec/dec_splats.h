@@ -17,9 +17,9 @@ typedef struct adcgs_dec_splats_config {
 } adcgs_dec_splats_config;
 
 /**
- * Writes the splats at the requested times, each to a file of its own, or all to one file of a format of splats over time. target has one number like %04d in its name, or there is
- * only one time. Without requested times, a target without a number gets the stream's first time, and a target with one gets all
- * times. input names the stream.
+ * Writes the splats at the requested times, each to a file of its own, or all to one file of a format of splats over time.
+ * target has one number like %04d in its name, or there is only one time, or all times go to one file. Without requested times,
+ * a target without a number gets the stream's first time, and other targets get all times. input names the stream.
  */
 adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input, const adcgs_dec_splats_config *how,
                               const adcgs_camera_path_request *request, adcgs_error *error);

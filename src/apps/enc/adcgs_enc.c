@@ -305,11 +305,10 @@ static const adcgs_cli program = {
     .program = "adcgs-enc",
     .operands = "SCENE",
     .summary = "Train a dynamic scene from posed images and write it to one file.",
-    .details =
-        "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D, COLMAP or\n"
-        "Dynamic 3D Gaussians, a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB, SOG,\n"
-        ".splat, .ksplat), whose views are rendered. Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or\n"
-        "millions: 20k, 2M.",
+    .details = "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D, COLMAP or\n"
+               "Dynamic 3D Gaussians, a transforms.json, a scene file, or splats, whose views are rendered: a file\n"
+               "(PLY, SPZ, GLB, SOG, .splat, .ksplat), or splats over time, as a file or a folder of numbered files.\n"
+               "Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or millions: 20k, 2M.",
     .min_operands = 0,
     .max_operands = OPERANDS_MAX, /* one is expected; the message depends on the others */
 };

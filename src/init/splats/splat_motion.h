@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The motion of splats over time in the form that matching of images gives (init/stereo.h): static points, moving points with times,
- * velocities and lifetimes, and rigid bodies. It is read from the splats instead of being found in images.
+ * The motion of splats over time in the form that matching of images gives (init/stereo.h): static points, moving points with
+ * times, velocities and lifetimes, and rigid bodies. It is read from the splats instead of being found in images.
  */
 #ifndef ADCGS_INIT_SPLATS_SPLAT_MOTION_H
 #define ADCGS_INIT_SPLATS_SPLAT_MOTION_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Directions from which splats look like the scene that they were made for. Objects look so from everywhere. A room or a landscape
- * shows large splats from directions where no camera was: the backs of walls, and the ground from below.
+ * Directions from which splats look like the scene that they were made for. Objects look so from everywhere. A room or a
+ * landscape shows large splats from directions where no camera was: the backs of walls, and the ground from below.
  */
 #ifndef ADCGS_SCENE_LAYOUTS_SPLAT_AIMS_H
 #define ADCGS_SCENE_LAYOUTS_SPLAT_AIMS_H
@@ -17,8 +17,8 @@ typedef struct adcgs_splat_aims {
 } adcgs_splat_aims;
 
 /**
- * Looks at splats, in world units, from all around the scene's centre, and selects the directions with at least half as much detail
- * as the best one. *is_object: true if that holds for three quarters of them.
+ * Looks at splats, in world units, from all around the scene's centre, and selects the directions with at least half as much
+ * detail as the best one. *is_object: true if that holds for three quarters of them.
  */
 adcgs_status adcgs_splat_aims_find(adcgs_splat_aims *aims, int *is_object, const adcgs_splat_scene *scene,
                                    const adcgs_splats *splats, const char *path, adcgs_error *error);

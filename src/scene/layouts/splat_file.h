@@ -15,10 +15,10 @@
 #define ADCGS_SPLAT_SCENE_SIZE 400 /**< pixels, width and height of the views; chosen by hand, not measured */
 
 /**
- * Fills the scene and scene->splats, without near planes. Static splats: 100 views for training, 10 for validation, 20 for testing.
- * Splats over time: 4 to 32 views of each frame for training, 640 in all if possible; 2 fixed cameras for validation and 6 for
- * testing, at 8 times. With want_points the centres of static splats with opacity 0.1 and more become initial points. The world's
- * axes are known if the format gives them. options: for splats over time; NULL for the defaults.
+ * Fills the scene and scene->splats, without near planes. Static splats: 100 views for training, 10 for validation, 20 for
+ * testing. Splats over time: 4 to 32 views of each frame for training, 640 in all if possible; 2 fixed cameras for validation
+ * and 6 for testing, at 8 times. With want_points the centres of static splats with opacity 0.1 and more become initial
+ * points. The world's axes are known if the format gives them. options: for splats over time; NULL for the defaults.
  */
 adcgs_status adcgs_splat_scene_read(adcgs_scene *scene, int want_points, const adcgs_dynamic_options *options, const char *path,
                                     adcgs_error *error);

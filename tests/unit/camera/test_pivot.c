@@ -42,9 +42,12 @@ static void test_pivot(void **state)
     for (int i = 0; i < 3; i++)
         away += (point[i] - c->cam_to_world[4 * i + 3]) * c->cam_to_world[4 * i + 2];
     assert_true(away >= 0.999 * (double)around[0] && away <= 1.001 * (double)around[n - 1]);
-    adcgs_camera up = *c; /* from far away the scene is a dot in the middle, and the corner shows background */
-    for (int i = 0; i < 3; i++)
+    adcgs_camera up = *c; /* far away, and turned around: it shows background alone */
+    for (int i = 0; i < 3; i++) {
         up.cam_to_world[4 * i + 3] -= 100 * up.cam_to_world[4 * i + 2];
+        up.cam_to_world[4 * i] = -up.cam_to_world[4 * i];
+        up.cam_to_world[4 * i + 2] = -up.cam_to_world[4 * i + 2];
+    }
     assert_int_equal(adcgs_pivot_find(point, d, &up, 0.0, 0.05, 0.05, &why), ADCGS_ERR_DATA);
     up.fx = -1;
     assert_true(adcgs_pivot_find(point, d, &up, 0.0, 0.5, 0.5, &why) != ADCGS_OK);

@@ -194,7 +194,7 @@ static void test_refused(void **state)
     assert_int_equal(adcgs_grow_segment(grow, NULL, &models[0], &out, NULL), ADCGS_ERR_LIMIT); /* larger than promised */
     assert_int_equal(out.size, 0);
     adcgs_grow_free(&grow);
-    assert_int_equal(adcgs_grow_create(&grow, &small, 100, NULL), ADCGS_OK);
+    assert_int_equal(adcgs_grow_create(&grow, &small, 400, NULL), ADCGS_OK);
     for (uint32_t i = 0; i < 3; i++)
         assert_int_equal(adcgs_grow_segment(grow, i ? &models[i - 1] : NULL, &models[i], &out, NULL), ADCGS_OK);
     assert_int_equal(adcgs_grow_segment(grow, &models[2], &deep, &out, NULL), ADCGS_ERR_LIMIT);
