@@ -124,7 +124,7 @@ int adcgs_zip_has(const adcgs_zip_archive *zip, const char *name)
 
 /* ---- Files ---- */
 
-/** Check what the directory says of a file, and find its bytes. */
+/** Check the directory's entry of a file, and find its bytes. */
 static adcgs_status find_bytes(const adcgs_zip_archive *zip, const entry *e, const uint8_t **packed, adcgs_error *error)
 {
     if (e->flags & ENCRYPTED)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The meta.json of SOG, versions 1 and 2: names of images, and what their bytes stand for. */
+/** \file The meta.json of SOG, versions 1 and 2: names of images, and the meaning of their bytes. */
 #ifndef ADCGS_MEDIA_SPLATS_SOG_META_H
 #define ADCGS_MEDIA_SPLATS_SOG_META_H
 

@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-/** Reads data that may be damaged; what is read keeps the promises of splats.h. */
+/** Reads data that may be damaged; splats that are read keep the promises of splats.h. */
 static inline adcgs_status read_damaged(const uint8_t *data, size_t bytes)
 {
     adcgs_splats s;

@@ -6,7 +6,7 @@
 
 static const tolerance most = {1e-5, 1e-5, 1.01e-4, 1e-5, 1e-5}; /* the expected opacities have the floor of 1e-4 */
 
-/** Frame i is at i / 29 of the length, whatever the clock. */
+/** Frame i is at i / 29 of the length, for every clock. */
 static void test_scene(void **state)
 {
     const adcgs_dynamic_options slow = {.rate = {15, 1}, .frames = 59};

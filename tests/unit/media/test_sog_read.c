@@ -65,7 +65,7 @@ static void test_round_trip(void **state)
     adcgs_splats_free(&s);
 }
 
-/** One moment of a stream in two formats. SPZ clips scales and colours. */
+/** One frame of a stream in two formats. SPZ clips scales and colours. */
 static void test_sample(void **state)
 {
     adcgs_splats s, z;
