@@ -2,7 +2,7 @@
 /** \file Sorted contents of a folder. */
 #include "config.h"
 
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 
 #include "system/extension.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Sorted contents of a folder. */
-#ifndef ADCGS_SCENE_LAYOUTS_LISTING_H
-#define ADCGS_SCENE_LAYOUTS_LISTING_H
+#ifndef ADCGS_MEDIA_LISTING_H
+#define ADCGS_MEDIA_LISTING_H
 
 #include "base/base.h"
 

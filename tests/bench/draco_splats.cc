@@ -127,7 +127,7 @@ int write(const draco::PointCloud &cloud, const char *to)
         std::fprintf(stderr, "%s: %d attributes, expected %d\n", to, cloud.num_attributes(), 1 + GENERICS);
         return 1;
     }
-    const adcgs_splats_style style = {"by Draco", 0};
+    const adcgs_splats_style style = {"by Draco", 0, 0, 0};
     adcgs_status status = adcgs_splats_alloc(&splats, cloud.num_points(), to, &error);
     for (uint32_t i = 0; status == ADCGS_OK && i < splats.n; i++)
         for (int a = 0; a <= GENERICS; a++) {

@@ -22,29 +22,15 @@ int adcgs_dec_packed_is(const char *target)
     return !strcasecmp(adcgs_extension(target), "splat4d") || !strcasecmp(adcgs_extension(target), "4dgs");
 }
 
-/** The rows of each frame, from the first on. */
-static adcgs_status sample(adcgs_splats *out, const adcgs_dec_rows *rows, adcgs_decoder *decoder, const adcgs_camera_path *frames,
-                           const char *target, adcgs_error *error)
+/** Copies the rows of a frame to user[frame]. */
+static adcgs_status keep_frame(void *user, int frame, const adcgs_splats *rows, adcgs_error *error)
 {
-    adcgs_splats now;
-    adcgs_status status = adcgs_dec_rows_start(&now, rows, target, error);
-    for (size_t k = 0; k < rows->n; k++)
-        for (int i = 0; i < rows->span[k].frames && status == ADCGS_OK && !adcgs_interrupted(); i++) {
-            const int frame = rows->span[k].first + i;
-            adcgs_primitives primitives;
-            status = adcgs_dec_rows_at(&rows->span[k], decoder, frames->frame[frame].time, &primitives, target, error);
-            if (status == ADCGS_OK) {
-                adcgs_dec_rows_update(&now, rows, &rows->span[k], &primitives);
-                status = adcgs_splats_join(&out[frame], &now, 1, target, error); /* a copy */
-            }
-            for (uint32_t row = 0; status == ADCGS_OK && row < out[frame].n; row++)
-                if (out[frame].opacity[row] < HIDDEN)
-                    out[frame].opacity[row] = 0.0f;
-            for (int a = 0; a < 3 && status == ADCGS_OK; a++)
-                out[frame].offset[a] = now.offset[a];
-        }
-    adcgs_splats_free(&now);
-    return status;
+    adcgs_splats *const out = (adcgs_splats *)user + frame;
+    ADCGS_TRY(adcgs_splats_copy(out, rows, "splats", error));
+    for (uint32_t row = 0; row < out->n; row++)
+        if (out->opacity[row] < HIDDEN)
+            out->opacity[row] = 0.0f;
+    return ADCGS_OK;
 }
 
 static adcgs_status write_rows(const adcgs_dec_rows *rows, adcgs_decoder *decoder, const adcgs_camera_path *frames,
@@ -56,7 +42,7 @@ static adcgs_status write_rows(const adcgs_dec_rows *rows, adcgs_decoder *decode
     adcgs_splats *const all = calloc((size_t)frames->n, sizeof *all);
     if (!all)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", target);
-    adcgs_status status = sample(all, rows, decoder, frames, target, error);
+    adcgs_status status = adcgs_dec_rows_each(rows, decoder, frames, target, keep_frame, all, error);
     const adcgs_splat_clip clip = {.frames = all, .n_frames = (uint32_t)frames->n, .fps = frames->frame_rate};
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = strcasecmp(adcgs_extension(target), "4dgs") ? adcgs_splat4d_write(&clip, target, error)

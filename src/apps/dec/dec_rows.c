@@ -100,7 +100,8 @@ static void hide(adcgs_splats *s)
         s->opacity[i] = UNSEEN;
 }
 
-adcgs_status adcgs_dec_rows_start(adcgs_splats *out, const adcgs_dec_rows *rows, const char *path, adcgs_error *error)
+/** All rows at the time of their first frame, to be updated by update(). */
+static adcgs_status start(adcgs_splats *out, const adcgs_dec_rows *rows, const char *path, adcgs_error *error)
 {
     adcgs_splats *const parts = calloc(rows->n + 1, sizeof *parts);
     if (!parts)
@@ -129,8 +130,8 @@ static void copy_row(adcgs_splats *to, uint32_t row, const adcgs_splats *from)
     to->opacity[row] = from->opacity[0];
 }
 
-void adcgs_dec_rows_update(adcgs_splats *splats, const adcgs_dec_rows *rows, const adcgs_dec_span *span,
-                           const adcgs_primitives *p)
+/** Sets the rows of a span to these primitives, and hides all others. */
+static void update(adcgs_splats *splats, const adcgs_dec_rows *rows, const adcgs_dec_span *span, const adcgs_primitives *p)
 {
     float values[14];
     adcgs_splats one = {.n = 1, .opacity = &values[10]};
@@ -145,4 +146,23 @@ void adcgs_dec_rows_update(adcgs_splats *splats, const adcgs_dec_rows *rows, con
     for (uint32_t i = 0; i < span->slots; i++)
         if (span->row[i] != ADCGS_DEC_NO_ROW && adcgs_splats_take_one(&one, 0, p, i, rows->origin, rows->scale))
             copy_row(splats, span->first_row + span->row[i], &one);
+}
+
+adcgs_status adcgs_dec_rows_each(const adcgs_dec_rows *rows, adcgs_decoder *decoder, const adcgs_camera_path *frames,
+                                 const char *path, adcgs_dec_rows_fn take, void *user, adcgs_error *error)
+{
+    adcgs_splats splats = {0};
+    adcgs_status status = start(&splats, rows, path, error);
+    for (size_t k = 0; k < rows->n; k++)
+        for (int i = 0; i < rows->span[k].frames && status == ADCGS_OK && !adcgs_interrupted(); i++) {
+            const int frame = rows->span[k].first + i;
+            adcgs_primitives primitives;
+            status = adcgs_dec_rows_at(&rows->span[k], decoder, frames->frame[frame].time, &primitives, path, error);
+            if (status != ADCGS_OK)
+                break;
+            update(&splats, rows, &rows->span[k], &primitives);
+            status = take(user, frame, &splats, error);
+        }
+    adcgs_splats_free(&splats);
+    return status;
 }

@@ -36,10 +36,13 @@ void adcgs_dec_rows_free(adcgs_dec_rows *rows);
 /** The primitives of a frame of a span. ADCGS_ERR_DATA if the segment is another one than before. */
 adcgs_status adcgs_dec_rows_at(const adcgs_dec_span *span, adcgs_decoder *decoder, double time, adcgs_primitives *out,
                                const char *path, adcgs_error *error);
-/** All rows at the time of their first frame, to be updated by adcgs_dec_rows_update(). */
-adcgs_status adcgs_dec_rows_start(adcgs_splats *out, const adcgs_dec_rows *rows, const char *path, adcgs_error *error);
-/** Sets the rows of a span to these primitives; invisible rows, and those of other spans, keep all but a tiny opacity. */
-void adcgs_dec_rows_update(adcgs_splats *splats, const adcgs_dec_rows *rows, const adcgs_dec_span *span,
-                           const adcgs_primitives *primitives);
+/** Receives the rows of a frame. */
+typedef adcgs_status (*adcgs_dec_rows_fn)(void *user, int frame, const adcgs_splats *splats, adcgs_error *error);
+/**
+ * Passes the rows of each frame to take(), in order, until an interrupt. Invisible rows, and those of other spans, have a tiny
+ * opacity, and else the values of a frame that shows them.
+ */
+adcgs_status adcgs_dec_rows_each(const adcgs_dec_rows *rows, adcgs_decoder *decoder, const adcgs_camera_path *frames,
+                                 const char *path, adcgs_dec_rows_fn take, void *user, adcgs_error *error);
 
 #endif

@@ -81,38 +81,37 @@ static adcgs_status write_frame(uint32_t *n, adcgs_decoder *decoder, const adcgs
     return status;
 }
 
-/** One file of rows that are the same splats in each. */
-static adcgs_status write_row_frame(adcgs_splats *splats, const adcgs_dec_rows *rows, const adcgs_dec_span *span,
-                                    adcgs_decoder *decoder, double time, const adcgs_dec_splats_config *how, const char *path,
-                                    adcgs_error *error)
+/** The files of frames with stable rows. */
+typedef struct row_files {
+    const adcgs_dec_splats_config *how;
+    const adcgs_camera_path *frames;
+    uint8_t axes;
+    char *path; /**< [size] */
+    size_t size;
+} row_files;
+
+static adcgs_status write_row_frame(void *user, int frame, const adcgs_splats *rows, adcgs_error *error)
 {
-    adcgs_primitives primitives;
+    const row_files *const files = user;
     char comment[128];
-    adcgs_splats_style style = how->style;
+    adcgs_splats splats = *rows;
+    adcgs_splats_style style = files->how->style;
+    splats.axes = files->axes;
     style.comment = comment;
-    ADCGS_TRY(adcgs_dec_rows_at(span, decoder, time, &primitives, path, error));
-    adcgs_dec_rows_update(splats, rows, span, &primitives);
-    snprintf(comment, sizeof comment, "adcgs %s, time %.9g s", PACKAGE_VERSION, time);
-    return adcgs_splats_write(splats, &style, path, error);
+    adcgs_pattern_format(files->how->target, frame, files->path, files->size);
+    snprintf(comment, sizeof comment, "adcgs %s, time %.9g s", PACKAGE_VERSION, files->frames->frame[frame].time);
+    return adcgs_splats_write(&splats, &style, files->path, error);
 }
 
 static adcgs_status write_rows(const adcgs_dec_rows *rows, adcgs_decoder *decoder, const adcgs_info *info,
                                const adcgs_dec_splats_config *how, const adcgs_camera_path *frames, adcgs_error *error)
 {
-    const size_t size = strlen(how->target) + 128;
-    char *const path = malloc(size);
-    adcgs_splats splats = {0};
-    adcgs_status status = path ? adcgs_dec_rows_start(&splats, rows, how->target, error)
-                               : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", how->target);
-    splats.axes = axes_of(info);
-    for (size_t k = 0; k < rows->n; k++)
-        for (int i = 0; i < rows->span[k].frames && status == ADCGS_OK && !adcgs_interrupted(); i++) {
-            const int frame = rows->span[k].first + i;
-            adcgs_pattern_format(how->target, frame, path, size);
-            status = write_row_frame(&splats, rows, &rows->span[k], decoder, frames->frame[frame].time, how, path, error);
-        }
-    adcgs_splats_free(&splats);
-    free(path);
+    row_files files = {.how = how, .frames = frames, .axes = axes_of(info), .size = strlen(how->target) + 128};
+    files.path = malloc(files.size);
+    const adcgs_status status = files.path
+                                    ? adcgs_dec_rows_each(rows, decoder, frames, how->target, write_row_frame, &files, error)
+                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", how->target);
+    free(files.path);
     return status;
 }
 

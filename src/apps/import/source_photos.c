@@ -7,7 +7,7 @@
 #include "media/image/panorama.h"
 #include "media/image/photo.h"
 #include "media/kind.h"
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 #include "system/extension.h"
 #include "system/paths.h"
 #include "system/text.h"

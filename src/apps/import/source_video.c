@@ -5,7 +5,7 @@
 #include "apps/import/source_images.h"
 
 #include "media/video/video.h"
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 #include "system/text.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 
 #include "apps/import/vocabulary.h"
 
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 #include "system/paths.h"
 
 #include <stdlib.h>

@@ -6,6 +6,28 @@
 
 #include <math.h>
 
+void adcgs_stereo_pose_set(adcgs_stereo_pose *p, const adcgs_rigid *at, const double pivot[3])
+{
+    double pose[12] = {0}, there[3];
+    for (int a = 0; a < 9; a++)
+        pose[4 * (a / 3) + a % 3] = at->r[a];
+    adcgs_rotation_from_pose(pose, p->q);
+    adcgs_rigid_apply(at, pivot, there);
+    for (int a = 0; a < 3; a++)
+        p->way[a] = there[a] - pivot[a];
+}
+
+void adcgs_stereo_poses_align(adcgs_stereo_pose *poses, uint32_t n)
+{
+    for (uint32_t i = 1; i < n; i++) {
+        const double *q = poses[i - 1].q;
+        double *next = poses[i].q;
+        const double dot = q[0] * next[0] + adcgs_v3_dot(q + 1, next + 1);
+        for (int k = 0; k < 4 && dot < 0; k++)
+            next[k] = -next[k];
+    }
+}
+
 adcgs_stereo_pose adcgs_stereo_pose_at(const adcgs_stereo *s, uint32_t body, float t)
 {
     const adcgs_stereo_pose *pose = s->body[body].pose;

@@ -3,7 +3,7 @@
 #include "init/rigid/body_result.h"
 
 #include "geometry/rotation.h"
-#include "geometry/vector.h"
+#include "init/rigid/body_pose.h"
 
 #include <math.h>
 
@@ -21,18 +21,6 @@ static void claim(adcgs_stereo *out, const adcgs_track *t, adcgs_layers *l, adcg
                 b->n++;
             }
         }
-}
-
-/** Expresses the motion relative to a pivot. */
-static void set_pose(adcgs_stereo_pose *p, const adcgs_rigid *at, const double pivot[3])
-{
-    double pose[12] = {0}, there[3];
-    for (int a = 0; a < 9; a++)
-        pose[4 * (a / 3) + a % 3] = at->r[a];
-    adcgs_rotation_from_pose(pose, p->q);
-    adcgs_rigid_apply(at, pivot, there);
-    for (int a = 0; a < 3; a++)
-        p->way[a] = there[a] - pivot[a];
 }
 
 /** Interpolates between two known poses. */
@@ -91,16 +79,10 @@ adcgs_status adcgs_body_write(adcgs_stereo *out, const adcgs_track *t, adcgs_lay
     for (int m = 0; m < l->n; m++)
         if (t->known[m]) {
             adcgs_rigid_then(&back, &t->place[m].at, &at);
-            set_pose(&b->pose[m], &at, b->pivot);
+            adcgs_stereo_pose_set(&b->pose[m], &at, b->pivot);
         }
     fill(b, t, l);
-    for (int m = 1; m < l->n; m++) {
-        const double *q = b->pose[m - 1].q;
-        double *next = b->pose[m].q;
-        const double dot = q[0] * next[0] + adcgs_v3_dot(q + 1, next + 1);
-        for (int k = 0; k < 4 && dot < 0; k++)
-            next[k] = -next[k];
-    }
+    adcgs_stereo_poses_align(b->pose, (uint32_t)l->n);
     claim(out, t, l, b, number);
     return ADCGS_OK;
 }

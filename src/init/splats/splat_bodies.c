@@ -4,8 +4,7 @@
 
 #include "init/splats/splat_bodies.h"
 
-#include "geometry/rotation.h"
-#include "init/rigid/rigid.h"
+#include "init/rigid/body_pose.h"
 
 #include <math.h>
 
@@ -124,17 +123,6 @@ static uint32_t find_one(search *s, uint32_t *best, uint32_t *scratch)
     return n;
 }
 
-static void set_pose(adcgs_stereo_pose *p, const adcgs_rigid *at, const double pivot[3])
-{
-    double pose[12] = {0}, there[3];
-    for (int a = 0; a < 9; a++)
-        pose[4 * (a / 3) + a % 3] = at->r[a];
-    adcgs_rotation_from_pose(pose, p->q);
-    adcgs_rigid_apply(at, pivot, there);
-    for (int a = 0; a < 3; a++)
-        p->way[a] = there[a] - pivot[a];
-}
-
 static adcgs_status write_body(adcgs_stereo_body *b, const search *s, const uint32_t *member, uint32_t n, adcgs_error *error)
 {
     *b = (adcgs_stereo_body){.n = n, .pose = adcgs_alloc(NULL, s->t->frames, sizeof *b->pose, error)};
@@ -146,14 +134,9 @@ static adcgs_status write_body(adcgs_stereo_body *b, const search *s, const uint
         for (int a = 0; a < 3; a++)
             b->pivot[a] += x[a] / n;
     }
-    for (uint32_t f = 0; f < s->t->frames; f++) {
-        set_pose(&b->pose[f], &s->motion[f], b->pivot);
-        double dot = 0.0;
-        for (int k = 0; k < 4 && f; k++)
-            dot += b->pose[f].q[k] * b->pose[f - 1].q[k];
-        for (int k = 0; k < 4 && dot < 0.0; k++)
-            b->pose[f].q[k] = -b->pose[f].q[k];
-    }
+    for (uint32_t f = 0; f < s->t->frames; f++)
+        adcgs_stereo_pose_set(&b->pose[f], &s->motion[f], b->pivot);
+    adcgs_stereo_poses_align(b->pose, s->t->frames);
     return ADCGS_OK;
 }
 

@@ -153,7 +153,7 @@ static adcgs_status state_at(const adcgs_dynamic *m, double seconds, adcgs_splat
 {
     const state *const s = m->state;
     const size_t first = (size_t)adcgs_dynamic_frame(m, seconds) * m->n;
-    ADCGS_TRY(adcgs_splats_join(out, &s->base, 1, m->path, error)); /* a copy */
+    ADCGS_TRY(adcgs_splats_copy(out, &s->base, m->path, error));
     for (uint32_t i = 0; i < out->n; i++) {
         double q[4], square = 0.0;
         for (uint32_t a = 0; a < 4; a++) {

@@ -15,9 +15,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define FRAMES_UNSTATED 300 /* frames of a clip without n_frames; literature (ftgs-player) */
-#define COLUMNS 19          /* columns besides harmonics; definition (FTGS) */
-#define REST_MAX 45         /* columns of harmonics, at most; arithmetic, 3 (4^2 - 1) */
+#define FRAMES_UNSTATED 300                     /* frames of a clip without n_frames; literature (ftgs-player) */
+#define OWN 5                                   /* columns that static splats lack; definition (FTGS) */
+#define COLUMNS (ADCGS_PLY_SPLAT_COLUMNS + OWN) /* columns besides harmonics; arithmetic */
+#define REST_MAX 45                             /* columns of harmonics, at most; arithmetic, 3 (4^2 - 1) */
 
 /** The comments of a header. */
 typedef struct settings {
@@ -104,21 +105,7 @@ static adcgs_status with_columns(reader *r, adcgs_ply_columns_fn use)
 {
     adcgs_motion *const m = r->motion;
     adcgs_splats *const s = &m->base;
-    const adcgs_ply_column fixed[COLUMNS] = {
-        {"x", s->mean[0], 1},
-        {"y", s->mean[1], 1},
-        {"z", s->mean[2], 1},
-        {"f_dc_0", s->colour[0], 1},
-        {"f_dc_1", s->colour[1], 1},
-        {"f_dc_2", s->colour[2], 1},
-        {"opacity", s->opacity, 1},
-        {"scale_0", s->scale[0], 1},
-        {"scale_1", s->scale[1], 1},
-        {"scale_2", s->scale[2], 1},
-        {"rot_0", s->rotation[0], 1},
-        {"rot_1", s->rotation[1], 1},
-        {"rot_2", s->rotation[2], 1},
-        {"rot_3", s->rotation[3], 1},
+    const adcgs_ply_column own[OWN] = {
         {"time", m->centre, 1},
         {"log_duration", m->sigma, 1},
         {"velocity_0", m->motion[0][0], 1},
@@ -128,7 +115,8 @@ static adcgs_status with_columns(reader *r, adcgs_ply_columns_fn use)
     adcgs_ply_column columns[COLUMNS + REST_MAX];
     char names[REST_MAX][32];
     const int n = r->is.moves != 0.0 ? COLUMNS : COLUMNS - 3;
-    memcpy(columns, fixed, sizeof fixed);
+    adcgs_ply_splat_columns(columns, s);
+    memcpy(columns + ADCGS_PLY_SPLAT_COLUMNS, own, sizeof own);
     for (int i = 0; i < r->n_rest; i++) {
         snprintf(names[i], sizeof names[i], "f_rest_%d", i);
         columns[n + i] = (adcgs_ply_column){names[i], s->harmonics ? s->harmonics + i : NULL, (size_t)r->n_rest};

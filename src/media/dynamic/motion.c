@@ -163,9 +163,7 @@ static void rotate(adcgs_splats *out, const adcgs_motion *m, uint32_t i, double 
 
 adcgs_status adcgs_motion_at(const adcgs_motion *m, double seconds, adcgs_splats *out, const char *path, adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_splats_join(out, &m->base, 1, path, error)); /* a copy */
-    for (int a = 0; a < 3; a++)
-        out->offset[a] = m->base.offset[a];
+    ADCGS_TRY(adcgs_splats_copy(out, &m->base, path, error));
     for (uint32_t i = 0; i < out->n; i++) {
         const double dt = seconds - (double)m->centre[i];
         out->opacity[i] = (float)((double)m->base.opacity[i] * share_at(m, i, seconds));

@@ -17,6 +17,17 @@ int adcgs_ply_declares(const uint8_t *data, size_t bytes, const char *property)
     return 0;
 }
 
+void adcgs_ply_splat_columns(adcgs_ply_column columns[ADCGS_PLY_SPLAT_COLUMNS], const adcgs_splats *s)
+{
+    const adcgs_ply_column all[ADCGS_PLY_SPLAT_COLUMNS] = {
+        {"x", s->mean[0], 1},         {"y", s->mean[1], 1},         {"z", s->mean[2], 1},         {"f_dc_0", s->colour[0], 1},
+        {"f_dc_1", s->colour[1], 1},  {"f_dc_2", s->colour[2], 1},  {"opacity", s->opacity, 1},   {"scale_0", s->scale[0], 1},
+        {"scale_1", s->scale[1], 1},  {"scale_2", s->scale[2], 1},  {"rot_0", s->rotation[0], 1}, {"rot_1", s->rotation[1], 1},
+        {"rot_2", s->rotation[2], 1}, {"rot_3", s->rotation[3], 1},
+    };
+    memcpy(columns, all, sizeof all);
+}
+
 static void take(void *user, uint64_t vertex, const adcgs_ply_property *property, double value)
 {
     const adcgs_ply_column *const column = (const adcgs_ply_column *)user + property->role;

@@ -4,6 +4,7 @@
 #define ADCGS_MEDIA_DYNAMIC_PLY_COLUMNS_H
 
 #include "media/points/ply.h"
+#include "media/splats/splats.h"
 
 typedef struct adcgs_ply_column {
     const char *name; /**< of a property of the vertices */
@@ -11,6 +12,10 @@ typedef struct adcgs_ply_column {
     size_t stride;    /**< 1: no gaps */
 } adcgs_ply_column;
 
+#define ADCGS_PLY_SPLAT_COLUMNS 14 /**< definition (3D Gaussian splatting): place, f_dc, opacity, scale, rot */
+
+/** The columns that all splats have, before activation, as arrays of the splats. */
+void adcgs_ply_splat_columns(adcgs_ply_column columns[ADCGS_PLY_SPLAT_COLUMNS], const adcgs_splats *splats);
 /** True if a header in the first bytes of a PLY file declares a property of this name; for is() of readers. */
 int adcgs_ply_declares(const uint8_t *data, size_t bytes, const char *property);
 /** A use of a table of columns. */

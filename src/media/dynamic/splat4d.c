@@ -48,7 +48,7 @@ static adcgs_status splat4d_at(const adcgs_dynamic *m, double seconds, adcgs_spl
     adcgs_splat4d *const s = m->state;
     const uint32_t frame = adcgs_dynamic_frame(m, seconds), group = group_of(s, frame);
     const void *part;
-    ADCGS_TRY(adcgs_splats_join(out, &s->base, 1, m->path, error)); /* a copy */
+    ADCGS_TRY(adcgs_splats_copy(out, &s->base, m->path, error));
     ADCGS_TRY(adcgs_recent_take(&s->recent, group, &part, error));
     const adcgs_status status = adcgs_splat4d_frame(out, s, part, frame - s->groups[group].first, error);
     adcgs_recent_give(&s->recent, part);

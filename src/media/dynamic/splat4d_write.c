@@ -199,7 +199,7 @@ static adcgs_status write_header(FILE *file, const writer *w, uint32_t groups)
 
 /* ---- The file ---- */
 
-/** Memory for all tables; what it lacks is found by the caller. */
+/** Memory for all tables; the caller finds missing ones. */
 static int make_tables(writer *w, uint32_t groups)
 {
     w->sign = malloc((size_t)w->clip->n_frames * w->n);

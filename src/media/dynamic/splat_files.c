@@ -8,13 +8,11 @@
 
 #include "media/dynamic/splat_files.h"
 
-#include "media/kind.h"
+#include "media/listing.h"
 #include "system/median.h"
 #include "system/paths.h"
 
 #include <ctype.h>
-#include <dirent.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,13 +30,8 @@
 /** Files in the order of frames. */
 typedef struct files {
     char **path;
-    uint32_t n, capacity;
+    uint32_t n;
 } files;
-
-typedef struct numbered {
-    char *name;
-    uint64_t number;
-} numbered;
 
 /* ---- Names ---- */
 
@@ -74,92 +67,67 @@ int adcgs_splat_files_name(const char *name, size_t *prefix, uint64_t *number)
     return 1;
 }
 
+static int is_frame(const char *name)
+{
+    size_t prefix;
+    uint64_t number;
+    return adcgs_splat_files_name(name, &prefix, &number);
+}
+
 static int by_number(const void *a, const void *b)
 {
-    const numbered *const x = a, *const y = b;
-    return x->number != y->number ? (x->number > y->number) - (x->number < y->number) : strcmp(x->name, y->name);
+    const char *const x = *(char *const *)a, *const y = *(char *const *)b;
+    size_t prefix;
+    uint64_t i = 0, k = 0;
+    adcgs_splat_files_name(x, &prefix, &i);
+    adcgs_splat_files_name(y, &prefix, &k);
+    return i != k ? (i > k) - (i < k) : strcmp(x, y);
 }
 
-/** Names in the folder that are a prefix and a number; *n of them, in order. NULL: out of memory, or no such folder. */
-static numbered *list_names(const char *folder, size_t *n, adcgs_error *error)
+/** Names in the folder that are a prefix and a number, in the order of the numbers. */
+static adcgs_status list_names(adcgs_listing *list, const char *folder, adcgs_error *error)
 {
-    size_t capacity = 64, prefix;
-    numbered *list = malloc(capacity * sizeof *list);
-    DIR *const directory = list ? opendir(folder) : NULL;
-    struct dirent *entry;
-    *n = 0;
-    if (list && !directory)
-        adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read the folder: %s", folder, strerror(errno));
-    while (list && directory && (entry = readdir(directory))) {
-        uint64_t number;
-        if (!adcgs_splat_files_name(entry->d_name, &prefix, &number) || *n >= ADCGS_DYNAMIC_FRAMES_MAX)
-            continue;
-        if (*n == capacity) {
-            numbered *const more = realloc(list, 2 * capacity * sizeof *list);
-            if (!more)
-                break;
-            list = more;
-            capacity *= 2;
-        }
-        list[*n] = (numbered){strdup(entry->d_name), number};
-        if (!list[(*n)++].name)
-            break;
-    }
-    if (directory)
-        closedir(directory);
-    if (list && !directory) {
-        free(list);
-        return NULL;
-    }
-    if (list)
-        qsort(list, *n, sizeof *list, by_number);
-    return list;
+    ADCGS_TRY(adcgs_listing_read(list, folder, is_frame, error));
+    if (list->n)
+        qsort(list->names, list->n, sizeof *list->names, by_number);
+    return ADCGS_OK;
 }
 
-static void free_names(numbered *list, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        free(list[i].name);
-    free(list);
-}
-
-/** Copies names of one prefix to paths. ADCGS_ERR_DATA for two prefixes. */
-static adcgs_status take_names(files *f, const char *folder, const numbered *list, size_t n, adcgs_error *error)
+/** Makes paths of names with one prefix. ADCGS_ERR_DATA for two prefixes, and for too few or too many names. */
+static adcgs_status take_names(files *f, const char *folder, const adcgs_listing *list, adcgs_error *error)
 {
     size_t first = 0, prefix = 0;
     uint64_t number;
-    f->path = calloc(n + 1, sizeof *f->path);
-    for (size_t i = 0; f->path && i < n; i++) {
-        if (!list[i].name || !adcgs_splat_files_name(list[i].name, &prefix, &number))
-            break;
+    if (list->n < 2 || list->n > ADCGS_DYNAMIC_FRAMES_MAX)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %zu numbered files of splats, expected 2 to %d", folder, list->n,
+                          ADCGS_DYNAMIC_FRAMES_MAX);
+    f->path = calloc(list->n, sizeof *f->path);
+    for (size_t i = 0; f->path && i < list->n; i++) {
+        adcgs_splat_files_name(list->names[i], &prefix, &number);
         if (i == 0)
             first = prefix;
-        if (prefix != first || strncmp(list[i].name, list[0].name, prefix))
+        if (prefix != first || strncmp(list->names[i], list->names[0], prefix))
             return adcgs_fail(error, ADCGS_ERR_DATA,
                               "%s: files of splats with different names before the number (%.60s, %.60s), expected one sequence",
-                              folder, list[0].name, list[i].name);
-        f->path[i] = adcgs_path("%s/%s", folder, list[i].name);
+                              folder, list->names[0], list->names[i]);
+        f->path[i] = adcgs_path("%s/%s", folder, list->names[i]);
         if (!f->path[i])
             break;
         f->n = (uint32_t)i + 1;
     }
-    return f->n == n ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
+    return f->n == list->n ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
 }
 
 int adcgs_splat_files_are(const char *folder)
 {
-    size_t n, prefix;
+    adcgs_listing list;
     adcgs_error unused;
-    numbered *const list = list_names(folder, &n, &unused);
-    uint64_t number;
-    int found = 0;
-    if (list && n > 1 && list[0].name && adcgs_splat_files_name(list[0].name, &prefix, &number)) {
-        char *const path = adcgs_path("%s/%s", folder, list[0].name);
-        found = path && adcgs_splats_is(path);
-        free(path);
-    }
-    if (list)
-        free_names(list, n);
+    if (list_names(&list, folder, &unused) != ADCGS_OK)
+        return 0;
+    char *const path = list.n > 1 ? adcgs_path("%s/%s", folder, list.names[0]) : NULL;
+    const int found = path && adcgs_splats_is(path);
+    free(path);
+    adcgs_listing_free(&list);
     return found;
 }
 
@@ -249,18 +217,13 @@ static int is_never(const uint8_t *data, size_t bytes)
 
 static adcgs_status open_files(adcgs_dynamic *d, adcgs_error *error)
 {
-    size_t n;
+    adcgs_listing list;
     files *const f = d->state = calloc(1, sizeof *f);
     if (!f)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", d->path);
-    adcgs_error reason = {.status = ADCGS_ERR_MEMORY, .text = "out of memory"};
-    numbered *const list = list_names(d->path, &n, &reason);
-    if (!list)
-        return adcgs_fail(error, reason.status, "%s", reason.text);
-    const adcgs_status status =
-        n > 1 ? take_names(f, d->path, list, n, error)
-              : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %zu numbered files of splats, expected at least two", d->path, n);
-    free_names(list, n);
+    ADCGS_TRY(list_names(&list, d->path, error));
+    const adcgs_status status = take_names(f, d->path, &list, error);
+    adcgs_listing_free(&list);
     ADCGS_TRY(status);
     adcgs_splats first;
     ADCGS_TRY(adcgs_splats_read(&first, f->path[0], error));

@@ -9,6 +9,7 @@
 
 #include "media/dynamic/motion.h"
 #include "media/dynamic/dynamic_readers.h"
+#include "media/splats/half.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -32,11 +33,7 @@ static int is_splatv(const uint8_t *data, size_t bytes)
 
 static float half(const uint8_t *at)
 {
-    const unsigned bits = adcgs_load_le16(at), exponent = bits >> 10 & 31, fraction = bits & 1023;
-    const double size = exponent == 31  ? fraction ? (double)NAN : (double)INFINITY
-                        : exponent == 0 ? ldexp(fraction, -24)
-                                        : ldexp(1024 + fraction, (int)exponent - 25);
-    return (float)(bits >> 15 ? -size : size);
+    return (float)adcgs_load_half(at);
 }
 
 /* ---- Blocks ---- */

@@ -32,38 +32,16 @@ static adcgs_status activate(adcgs_motion *m, double seconds, const char *path, 
 
 static adcgs_status with_columns(adcgs_motion *m, adcgs_ply *ply, adcgs_ply_columns_fn use)
 {
-    adcgs_splats *const s = &m->base;
-    const adcgs_ply_column columns[] = {
-        {"x", s->mean[0], 1},
-        {"y", s->mean[1], 1},
-        {"z", s->mean[2], 1},
-        {"trbf_center", m->centre, 1},
-        {"trbf_scale", m->sigma, 1},
-        {"motion_0", m->motion[0][0], 1},
-        {"motion_1", m->motion[0][1], 1},
-        {"motion_2", m->motion[0][2], 1},
-        {"motion_3", m->motion[1][0], 1},
-        {"motion_4", m->motion[1][1], 1},
-        {"motion_5", m->motion[1][2], 1},
-        {"motion_6", m->motion[2][0], 1},
-        {"motion_7", m->motion[2][1], 1},
-        {"motion_8", m->motion[2][2], 1},
-        {"f_dc_0", s->colour[0], 1},
-        {"f_dc_1", s->colour[1], 1},
-        {"f_dc_2", s->colour[2], 1},
-        {"opacity", s->opacity, 1},
-        {"scale_0", s->scale[0], 1},
-        {"scale_1", s->scale[1], 1},
-        {"scale_2", s->scale[2], 1},
-        {"rot_0", s->rotation[0], 1},
-        {"rot_1", s->rotation[1], 1},
-        {"rot_2", s->rotation[2], 1},
-        {"rot_3", s->rotation[3], 1},
-        {"omega_0", m->turn[0], 1},
-        {"omega_1", m->turn[1], 1},
-        {"omega_2", m->turn[2], 1},
-        {"omega_3", m->turn[3], 1},
+    const adcgs_ply_column own[] = {
+        {"trbf_center", m->centre, 1},    {"trbf_scale", m->sigma, 1},      {"motion_0", m->motion[0][0], 1},
+        {"motion_1", m->motion[0][1], 1}, {"motion_2", m->motion[0][2], 1}, {"motion_3", m->motion[1][0], 1},
+        {"motion_4", m->motion[1][1], 1}, {"motion_5", m->motion[1][2], 1}, {"motion_6", m->motion[2][0], 1},
+        {"motion_7", m->motion[2][1], 1}, {"motion_8", m->motion[2][2], 1}, {"omega_0", m->turn[0], 1},
+        {"omega_1", m->turn[1], 1},       {"omega_2", m->turn[2], 1},       {"omega_3", m->turn[3], 1},
     };
+    adcgs_ply_column columns[ADCGS_PLY_SPLAT_COLUMNS + ADCGS_COUNTOF(own)];
+    adcgs_ply_splat_columns(columns, &m->base);
+    memcpy(columns + ADCGS_PLY_SPLAT_COLUMNS, own, sizeof own);
     return use(ply, columns, ADCGS_COUNTOF(columns));
 }
 

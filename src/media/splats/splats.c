@@ -102,6 +102,13 @@ adcgs_status adcgs_splats_join(adcgs_splats *out, const adcgs_splats *parts, siz
     return ADCGS_OK;
 }
 
+adcgs_status adcgs_splats_copy(adcgs_splats *out, const adcgs_splats *splats, const char *path, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_splats_join(out, splats, 1, path, error));
+    memcpy(out->offset, splats->offset, sizeof out->offset);
+    return ADCGS_OK;
+}
+
 void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out)
 {
     *out = (adcgs_primitives){.n = (splats->n + 63) / 64 * 64, .opacity = splats->opacity};

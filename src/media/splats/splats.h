@@ -58,6 +58,9 @@ void adcgs_splats_free(adcgs_splats *splats);
  */
 adcgs_status adcgs_splats_join(adcgs_splats *out, const adcgs_splats *parts, size_t n, const char *path, adcgs_error *error);
 
+/** Copy splats, with their offset. On failure *out is empty. */
+adcgs_status adcgs_splats_copy(adcgs_splats *out, const adcgs_splats *splats, const char *path, adcgs_error *error);
+
 /** Point the renderer's primitives at the splats, without a copy. */
 void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out);
 /**

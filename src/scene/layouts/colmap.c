@@ -8,7 +8,7 @@
 #include "scene/layouts/colmap_files.h"
 #include "scene/layouts/colmap_twice.h"
 #include "scene/layouts/footage.h"
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 #include "scene/layouts/unmasked.h"
 #include "scene/layouts/unposed.h"
 #include "scene/pose_check.h"

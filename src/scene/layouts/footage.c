@@ -5,7 +5,7 @@
 #include "scene/layouts/footage.h"
 
 #include "media/video/video.h"
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 #include "system/paths.h"
 
 #include <limits.h>

@@ -9,7 +9,7 @@
 #include "scene/layouts/calibration.h"
 #include "scene/layouts/colmap.h"
 #include "scene/layouts/footage.h"
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 #include "scene/pose_check.h"
 #include "system/file.h"
 #include "system/paths.h"

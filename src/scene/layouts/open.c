@@ -15,7 +15,7 @@
 #include "scene/layouts/captures.h"
 #include "scene/layouts/colmap.h"
 #include "scene/layouts/hypernerf.h"
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 #include "scene/layouts/llff.h"
 #include "scene/layouts/panoptic.h"
 #include "scene/layouts/scene_file.h"

@@ -69,8 +69,7 @@ adcgs_status adcgs_splat_aims_find(adcgs_splat_aims *aims, int *is_object, const
 {
     double detail[ADCGS_SPLAT_AIMS], sorted[ADCGS_SPLAT_AIMS];
     adcgs_splats copy;
-    ADCGS_TRY(adcgs_splats_join(&copy, splats, 1, path, error));
-    memcpy(copy.offset, splats->offset, sizeof copy.offset);
+    ADCGS_TRY(adcgs_splats_copy(&copy, splats, path, error));
     adcgs_splat_scene_normalise(s, &copy);
     const adcgs_status status = judge(detail, aims, s, &copy, error);
     adcgs_splats_free(&copy);

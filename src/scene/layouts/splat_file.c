@@ -284,16 +284,21 @@ static adcgs_status read_static(adcgs_scene *scene, int want_points, const char 
 /** Finds the region that splats over time occupy at some times, and where to look at it from in the middle one. */
 static adcgs_status survey(adcgs_splat_aims *aims, adcgs_splat_scene *s, sample *m, const char *path, adcgs_error *error)
 {
-    adcgs_splats middle;
-    for (int i = 0; i < REGION_TIMES; i++) {
+    adcgs_splats middle = {0};
+    adcgs_status status = ADCGS_OK;
+    for (int i = 0; i < REGION_TIMES && status == ADCGS_OK; i++) {
         adcgs_splats state;
-        ADCGS_TRY(adcgs_dynamic_at(s->dynamic, adcgs_dynamic_duration(s->dynamic) * i / (REGION_TIMES - 1.0), &state, error));
-        const uint32_t step = (uint32_t)((uint64_t)state.n * REGION_TIMES / REGION_SPLATS) + 1;
-        sample_add(m, &state, step);
-        adcgs_splats_free(&state);
+        status = adcgs_dynamic_at(s->dynamic, adcgs_dynamic_duration(s->dynamic) * i / (REGION_TIMES - 1.0), &state, error);
+        if (status != ADCGS_OK)
+            break;
+        sample_add(m, &state, (uint32_t)((uint64_t)state.n * REGION_TIMES / REGION_SPLATS) + 1);
+        if (i == REGION_TIMES / 2)
+            middle = state;
+        else
+            adcgs_splats_free(&state);
     }
-    ADCGS_TRY(adcgs_dynamic_at(s->dynamic, 0.5 * adcgs_dynamic_duration(s->dynamic), &middle, error));
-    const adcgs_status status = find_aims(aims, s, m, &middle, path, error);
+    if (status == ADCGS_OK)
+        status = find_aims(aims, s, m, &middle, path, error);
     adcgs_splats_free(&middle);
     return status;
 }

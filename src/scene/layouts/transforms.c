@@ -6,7 +6,7 @@
 
 #include "scene/camera_json.h"
 #include "scene/layouts/calibration.h"
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 #include "scene/layouts/transforms_clock.h"
 #include "scene/layouts/transforms_files.h"
 #include "scene/layouts/view_lens.h"

@@ -4,7 +4,7 @@
 
 #include "scene/layouts/transforms_check.h"
 
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 #include "scene/layouts/unmasked.h"
 #include "scene/layouts/unposed.h"
 #include "system/sort_values.h"

@@ -4,7 +4,7 @@
 
 #include "scene/layouts/unposed.h"
 
-#include "scene/layouts/listing.h"
+#include "media/listing.h"
 #include "system/paths.h"
 
 #include <stdlib.h>
