@@ -58,4 +58,16 @@ head -c 2000 "$dir/rows/frame11.ply" >"$dir/rows/cut" && mv "$dir/rows/cut" "$di
 expect 4 "frame11.ply" ./adcgs-enc "$dir/rows" -o "$dir/x.adcgs" -n 10 -q
 [ ! -e "$dir/x.adcgs" ] || bad "a stream of damaged splats"
 expect 2 "splat-frames" ./adcgs-enc "$dir/mixed" -o "$dir/x.adcgs" --splat-frames 0
+
+# SpacetimeGaussians' full model has a network in another file.
+{
+    printf 'ply\nformat ascii 1.0\nelement vertex 60\n'
+    printf 'property float %s\n' x y z trbf_center trbf_scale motion_0 motion_1 motion_2 motion_3 motion_4 motion_5 motion_6 motion_7 \
+        motion_8 f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3 omega_0 omega_1 omega_2 omega_3 f_t_0
+    printf 'end_header\n'
+    awk 'BEGIN { for (i = 0; i < 60; i++) print i % 6, i % 10, i % 4, 0.5, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0.2, 0.9, 3, -1, -1, -1, 1, 0, 0, 0, 0, 0, 0, 0, 0 }'
+} >"$dir/full.ply"
+expect 5 "full model .* --partial" ./adcgs-enc "$dir/full.ply" -o "$dir/x.adcgs"
+expect 0 "without its network: colours are approximate" ./adcgs-enc "$dir/full.ply" -o "$dir/x.adcgs" --partial --splat-frames 3 \
+    --preset draft -n 10 --scale 4
 exit $failed
