@@ -68,7 +68,7 @@ void adcgs_enc_diagnose(const adcgs_cli *cli, adcgs_decoder *decoder, const adcg
     adcgs_scene some = *scene;
     adcgs_evaluation mean;
     adcgs_error error;
-    if (*cli->quiet || !n)
+    if (*cli->quiet || !n || scene->splats) /* the encoder itself placed the cameras of splats */
         return;
     /* Picks one view of each stretch of views, at a random place: cameras may take turns. */
     for (uint32_t i = 0; i < n; i++) {

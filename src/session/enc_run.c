@@ -253,8 +253,8 @@ adcgs_status adcgs_enc_train(adcgs_enc_context *w, const adcgs_enc_job *job, con
     if (!adcgs_enc_team_follows(&w->team))
         adcgs_progress_show(&w->progress, "start   %u view%s: matching ...", scene->n_views[ADCGS_SPLIT_TRAIN],
                             adcgs_s(scene->n_views[ADCGS_SPLIT_TRAIN]));
-    const int is_one_of_many = job->ranks && job->ranks->rank;             /* the first rank reports for all */
-    const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* live footage is not judged */
+    const int is_one_of_many = job->ranks && job->ranks->rank;                               /* the first rank reports for all */
+    const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many && !scene->splats; /* nor live footage, nor splats */
     adcgs_trainer_input input = {.before = before,
                                  .details = job->plan && job->plan->has_details ? &job->plan->details : NULL,
                                  .judges_poses = tells && !w->diagnosed}; /* by the first part of a scene */

@@ -8,6 +8,8 @@
 #include <stdio.h>
 
 #define ADCGS_ZIP_FILES 8 /**< files of an archive, at most; chosen by hand, not measured */
+/** Upper bound of the ratio of deflate's uncompressed to compressed bytes; literature (zlib's documentation). */
+#define ADCGS_DEFLATE_RATIO 1032
 
 typedef struct adcgs_zip {
     FILE *file; /**< the caller checks it for errors; members below are initially zero */

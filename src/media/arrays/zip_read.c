@@ -7,6 +7,7 @@
 #include "config.h"
 
 #include "media/arrays/zip_read.h"
+#include "system/zip.h"
 
 #include <stdlib.h>
 
@@ -14,8 +15,6 @@
 #define HAS_ZLIB
 #include <zlib.h>
 #endif
-
-#define RATIO_MAX 1100 /* above deflate's compression ratio, which is 1032; literature (zlib's documentation) */
 
 /* Origin: definition (ZIP, APPNOTE.TXT). Sizes are bytes without names, extra fields and comments. */
 #define END_BYTES 22               /* end record, 4.3.16 */
@@ -140,7 +139,7 @@ static adcgs_status find_bytes(const adcgs_zip_archive *zip, const entry *e, con
     const size_t head = LOCAL_BYTES + (size_t)adcgs_load_le16(local + 26) + adcgs_load_le16(local + 28);
     if (zip->bytes - e->local < head || zip->bytes - e->local - head < e->packed)
         return bad(zip->path, "it ends early", error);
-    if (e->method == STORED ? e->whole != e->packed : e->whole / RATIO_MAX > e->packed)
+    if (e->method == STORED ? e->whole != e->packed : e->whole / ADCGS_DEFLATE_RATIO > e->packed)
         return bad(zip->path, "a file's size differs from the declared size", error);
     *packed = local + head;
     return ADCGS_OK;

@@ -6,6 +6,7 @@
 #include "config.h"
 
 #include "media/splats/spz.h"
+#include "system/zip.h"
 
 int adcgs_spz_is(const uint8_t *data, size_t bytes)
 {
@@ -21,7 +22,6 @@ int adcgs_spz_is(const uint8_t *data, size_t bytes)
 #include <zstd.h>
 
 /* Origin, unless a line states one: definition (SPZ, whose text spz.h names). */
-#define GZIP_RATIO 1032                /* upper bound of deflate's compression ratio; literature (zlib's documentation) */
 #define ZSTD_RATIO ((uint64_t)1 << 17) /* above zstd's ratio: a block of 128 KiB takes four bytes; RFC 8878, arithmetic */
 #define INPUT_PART ((size_t)1 << 30)   /* bytes passed to zlib at once; chosen by hand, not measured */
 #define FRACTION_MAX 30                /* fractional bits accepted in a header; chosen by hand, not measured */
@@ -151,7 +151,7 @@ static adcgs_status open_old(reader *r)
     ADCGS_TRY(take_header(r, header));
     for (int c = 0; c < ADCGS_SPZ_COLUMNS; c++)
         total += r->sizes[c];
-    if (total / GZIP_RATIO > bytes)
+    if (total / ADCGS_DEFLATE_RATIO > bytes)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %u splats, but only %zu bytes", r->path, r->n, bytes);
     return ADCGS_OK;
 }
