@@ -35,6 +35,8 @@ typedef struct adcgs_stereo_point {
     float end[2];      /**< time from t to the end of the lifetime, before and after, 1: whole duration; 0: unknown */
     float life, shift; /**< for the anchor: initial half lifetime, and offset of its middle from t */
     float detail;      /**< contrast of the image around it, 0..1 */
+    float spread[3];   /**< standard deviations along the axes of the content that it stands for, scene units; 0: unknown */
+    float extent[3];   /**< standard deviations along the axes of a splat of this content, scene units; 0: unknown */
     uint8_t moves;
     uint8_t in_place; /**< adcgs_stereo_in_place */
     uint8_t body;     /**< index of its rigid body, from 1; 0: none */

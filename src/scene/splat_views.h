@@ -22,6 +22,7 @@ struct adcgs_splat_scene {
     adcgs_splats splats; /**< in units of the radius, from the centre; over time: those of the first frame */
     double centre[3], radius;
     adcgs_dynamic *dynamic; /**< NULL: the splats are static */
+    int gives_points;       /**< the scene's points are the centres of these splats, which are static */
     pthread_mutex_t lock;   /**< protects the states, except the splats of those in use */
     pthread_cond_t unused;
     uint64_t uses;

@@ -46,6 +46,16 @@ static void set_anchor(adcgs_fmodel *f, uint32_t i, const double rgb[3], double 
     }
 }
 
+/** Extents of offsets and base scales from the splats that the point stands for; the sigmoid of the scales begins at one half. */
+static void set_extents(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p)
+{
+    for (int a = 0; a < 3; a++) {
+        if (p->spread[a] > 0)
+            *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, a) = logf(fminf(fmaxf(p->spread[a], f->voxel), 1));
+        *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, 3 + a) = logf(fminf(fmaxf(2 * p->extent[a], f->voxel), 1));
+    }
+}
+
 /** Makes one anchor per occupied voxel, in Morton order. order[i]: the source point of anchor i. *anchors: their number. */
 static adcgs_status voxelise(const adcgs_start_points *c, double half, int depth, uint32_t (*pos)[3], uint32_t *order,
                              uint32_t *anchors, adcgs_error *error)
@@ -104,6 +114,8 @@ static adcgs_status make_anchors(adcgs_fmodel **out, const adcgs_start_points *c
                                      config->seed, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < n; i++) {
         set_anchor(*out, i, c->rgb[order[i]], spacing[i]);
+        if (c->matched[order[i]] && c->matched[order[i]]->extent[0] > 0)
+            set_extents(*out, i, c->matched[order[i]]);
         if (config->params.spans && c->matched[order[i]])
             set_life(*out, i, c->matched[order[i]], half_life);
     }

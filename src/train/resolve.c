@@ -17,6 +17,8 @@
 #define SQUARE_ALONE 0.5f
 /* Of max_anchors, if there are points; calibrated on llff_fern and zju313_15f (doc/log/initialisation.md). */
 #define START_SHARE 0.75
+/* The same for splats as a scene, which show all content; calibrated on biker, plyseq and stg_lite (doc/log/splats.md). */
+#define SPLATS_START_SHARE 0.98
 
 /* Densification intervals per trial; chosen by hand, not measured. */
 #define TRIAL_DENSIFICATIONS 20
@@ -218,9 +220,9 @@ adcgs_status adcgs_resolve_target(adcgs_train_config *c, adcgs_error *error)
     return ADCGS_OK;
 }
 
-void adcgs_resolve_start(adcgs_train_config *c)
+void adcgs_resolve_start(adcgs_train_config *c, int splats)
 {
-    const uint32_t least = (uint32_t)(START_SHARE * c->max_anchors);
+    const uint32_t least = (uint32_t)((splats ? SPLATS_START_SHARE : START_SHARE) * c->max_anchors);
     decide_open(c, "start_anchors", ADCGS_MAX(c->start_anchors, least), ADCGS_BY_SCENE, "there are points to begin with");
 }
 

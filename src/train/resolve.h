@@ -59,8 +59,11 @@ int adcgs_resolve_wants_details(const adcgs_train_config *config);
 void adcgs_resolve_anchors(adcgs_train_config *config, uint32_t details);
 /** Lambda, anchors and networks that suit the target; see rate_plan.h. */
 adcgs_status adcgs_resolve_target(adcgs_train_config *config, adcgs_error *error);
-/** Initial anchors, if there are points, from the scene or from matching: they lie on surfaces, and growth adds the rest. */
-void adcgs_resolve_start(adcgs_train_config *config);
+/**
+ * Initial anchors, if there are points, from the scene or from matching: they lie on surfaces, and growth adds the rest. splats:
+ * the scene consists of splats, so that the points stand for all content.
+ */
+void adcgs_resolve_start(adcgs_train_config *config, int splats);
 /** Result of matching: whether there are lifetimes, and how many bodies, -1: as many as requested. */
 void adcgs_resolve_matching(adcgs_train_config *config, int moves, int bodies);
 /** A run that continues the previous segment has its parameters. */

@@ -6,6 +6,7 @@
 #include "init/motion_check.h"
 #include "init/rigid/body_pose.h"
 #include "init/splats/splat_motion.h"
+#include "scene/splat_views.h"
 #include "train/density/visibility.h"
 #include "train/resolve.h"
 #include "train/scene_frame.h"
@@ -38,6 +39,12 @@
 #define FAR_SEEN_BY 10          /* the same beyond the near radius */
 
 /* ---- Candidate points ---- */
+
+/** True if the scene has points, other than those of its static splats, which matching gives with their sizes. */
+static int has_points(const adcgs_scene *scene, const adcgs_train_config *config)
+{
+    return scene->points.n >= ADCGS_POINTS_LEAST && !(config->matching_frames && scene->splats && scene->splats->gives_points);
+}
 
 static adcgs_status alloc_points(adcgs_start_points *c, uint32_t capacity, adcgs_error *error)
 {
@@ -228,11 +235,6 @@ static void matched_points(adcgs_start_points *c, const adcgs_stereo *found, uin
         add_matched(c, found, &found->still[(uint64_t)i * found->n_still / n]);
 }
 
-static int has_points(const adcgs_scene *scene)
-{
-    return scene->points.n >= ADCGS_POINTS_LEAST;
-}
-
 /**
  * Uses the scene's points, with matched moving points; otherwise matched points, and random points where matching found nothing.
  */
@@ -241,12 +243,12 @@ static adcgs_status find_points(adcgs_start_points *c, const adcgs_visibility *s
 {
     const uint32_t all = config->start_anchors, moving = config->params.spans ? (uint32_t)(MOVING_SHARE * all) : 0;
     /* Points that no camera sees cannot be trained. A part of a scene may show a place without the scene's points. */
-    const int given = has_points(s->scene) && sees_points(s, all);
-    if (has_points(s->scene) && !given && !s->scene->whole && !sees_points(s, POINTS_LOOKED_AT))
+    const int given = has_points(s->scene, config) && sees_points(s, all);
+    if (has_points(s->scene, config) && !given && !s->scene->whole && !sees_points(s, POINTS_LOOKED_AT))
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "%s: no training camera sees any of the %u initial points: check their units and axes against poses",
                           s->scene->directory, s->scene->points.n);
-    if (given || !has_points(s->scene))
+    if (given || s->scene->points.n < ADCGS_POINTS_LEAST)
         given_points(c, s, given ? all - moving : all);
     if (c->n >= ADCGS_POINTS_LEAST && !moving)
         return ADCGS_OK;
@@ -305,14 +307,14 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, unsigned how, const adcgs_sc
                                adcgs_pool *pool, adcgs_error *error)
 {
     int matched = 0, whole = 0, moves;
-    const int given = has_points(scene);
+    const int given = has_points(scene, config);
     adcgs_stereo_options options = {.still = 0};
     if (config->matching_frames && (!given || config->params.spans)) {
         ADCGS_TRY(applies(scene, &matched, error));
         ADCGS_TRY(applies(scene->whole ? scene->whole : scene, &whole, error));
     }
     if (matched || given)
-        adcgs_resolve_start(config);
+        adcgs_resolve_start(config, scene->splats != NULL);
     if (matched && !(how & ADCGS_START_KNOWN)) {
         options.still = (uint32_t)(MATCHED_SHARE * config->start_anchors);
         options.frames = config->matching_frames;

@@ -8,7 +8,7 @@
 
 #include "init/stereo.h"
 
-/** True for a scene of splats over time. */
+/** True for a scene of splats, over time or static; not if it has points of another source and static splats. */
 int adcgs_splat_motion_applies(const adcgs_scene *scene);
 /** Fills *out, which is zero, by the scene's splats. The caller clears it. */
 adcgs_status adcgs_splat_motion_find(adcgs_stereo *out, const adcgs_scene *scene, const adcgs_stereo_options *options,

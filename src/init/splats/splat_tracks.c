@@ -10,8 +10,8 @@
 #include <math.h>
 
 /* Origin, unless a line states one: chosen by hand, not measured. */
-#define TRACKS_MAX 20000 /* tracks that begin in one frame */
-#define CAPACITY 40000   /* tracks of all frames together */
+#define TRACKS_MAX 60000 /* tracks that begin in one frame */
+#define CAPACITY 80000   /* tracks of all frames together */
 #define VISIBLE 0.1f     /* opacity from which a splat counts, as in layouts/splat_file.c */
 #define REACH 0.15       /* scene units between the expected and the found position */
 #define TINT 0.3         /* scene units per unit of colour difference */
@@ -33,8 +33,8 @@ static adcgs_status alloc_tracks(adcgs_splat_tracks *t, uint32_t capacity, uint3
     t->x = adcgs_alloc(NULL, all, sizeof *t->x, error);
     t->is_visible = adcgs_alloc(NULL, all, sizeof *t->is_visible, error);
     t->rgb = adcgs_alloc(NULL, capacity, sizeof *t->rgb, error);
-    t->size = adcgs_alloc(NULL, capacity, sizeof *t->size, error);
-    return t->time && t->x && t->is_visible && t->rgb && t->size ? ADCGS_OK : adcgs_alloc_status(error);
+    t->extent = adcgs_alloc(NULL, capacity, sizeof *t->extent, error);
+    return t->time && t->x && t->is_visible && t->rgb && t->extent ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 void adcgs_splat_tracks_clear(adcgs_splat_tracks *t)
@@ -43,7 +43,7 @@ void adcgs_splat_tracks_clear(adcgs_splat_tracks *t)
     adcgs_free(NULL, t->x);
     adcgs_free(NULL, t->is_visible);
     adcgs_free(NULL, t->rgb);
-    adcgs_free(NULL, t->size);
+    adcgs_free(NULL, t->extent);
     *t = (adcgs_splat_tracks){.n = 0};
 }
 
@@ -54,23 +54,37 @@ static void place_of(double x[3], const adcgs_splats *s, uint32_t i, const adcgs
         x[a] = (s->offset[a] + (double)s->mean[a][i] - o->origin[a]) / o->scale;
 }
 
+/** Standard deviations of a splat along the axes, in units of the scene. */
+static void extent_of(float extent[3], const adcgs_splats *s, uint32_t i, double scale)
+{
+    const double w = (double)s->rotation[0][i], x = (double)s->rotation[1][i], y = (double)s->rotation[2][i];
+    const double z = (double)s->rotation[3][i], length = w * w + x * x + y * y + z * z, unit = length > 0.0 ? 2.0 / length : 0.0;
+    const double turn[3][3] = {{1 - unit * (y * y + z * z), unit * (x * y - w * z), unit * (x * z + w * y)},
+                               {unit * (x * y + w * z), 1 - unit * (x * x + z * z), unit * (y * z - w * x)},
+                               {unit * (x * z - w * y), unit * (y * z + w * x), 1 - unit * (x * x + y * y)}};
+    for (int a = 0; a < 3; a++) {
+        double square = 0.0;
+        for (int c = 0; c < 3; c++)
+            square += pow(turn[a][c] * (double)s->scale[c][i], 2);
+        extent[a] = (float)(sqrt(square) / scale);
+    }
+}
+
 /** Records splat i as the place of a track in a frame. */
 static void record(adcgs_splat_tracks *t, uint32_t track, uint32_t frame, const adcgs_splats *s, uint32_t i,
                    const adcgs_stereo_options *o)
 {
     const size_t at = (size_t)track * t->frames + frame;
-    double x[3], size = 0.0;
+    double x[3];
     place_of(x, s, i, o);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         t->x[at][a] = (float)x[a];
-        size = fmax(size, (double)s->scale[a][i]);
-    }
     t->is_visible[at] = s->opacity[i] >= VISIBLE;
-    if (!t->is_visible[at] && t->size[track] > 0.0f)
+    if (!t->is_visible[at] && t->extent[track][0] > 0.0f)
         return;
     for (int a = 0; a < 3; a++)
         t->rgb[track][a] = s->colour[a][i];
-    t->size[track] = (float)(size / o->scale);
+    extent_of(t->extent[track], s, i, o->scale);
 }
 
 static adcgs_status state_at(adcgs_splats *out, const adcgs_scene *scene, const adcgs_splat_tracks *t, uint32_t frame,
@@ -209,17 +223,40 @@ static adcgs_status match_frames(adcgs_splat_tracks *t, const adcgs_scene *scene
     return status;
 }
 
-adcgs_status adcgs_splat_tracks_find(adcgs_splat_tracks *t, const adcgs_scene *scene, const adcgs_stereo_options *o,
-                                     adcgs_error *error)
+/* ---- Static splats ---- */
+
+/** A track of one frame for every step'th splat, which the scene keeps in units of its radius, from its centre. */
+static adcgs_status stand(adcgs_splat_tracks *t, const adcgs_scene *scene, const adcgs_stereo_options *options,
+                          adcgs_error *error)
+{
+    const adcgs_splat_scene *const from = scene->splats;
+    const uint32_t step = from->splats.n / TRACKS_MAX + 1;
+    adcgs_stereo_options o = {.scale = options->scale / from->radius};
+    for (int a = 0; a < 3; a++)
+        o.origin[a] = (options->origin[a] - from->centre[a]) / from->radius;
+    ADCGS_TRY(alloc_tracks(t, (from->splats.n + step - 1) / step + 1, 1, error));
+    for (uint32_t i = 0; i < from->splats.n; i += step)
+        record(t, t->n++, 0, &from->splats, i, &o);
+    return ADCGS_OK;
+}
+
+/* ---- All of them ---- */
+
+static adcgs_status follow(adcgs_splat_tracks *t, const adcgs_scene *scene, const adcgs_stereo_options *o, adcgs_error *error)
 {
     const int known = scene->splats->dynamic->has_identity;
     const uint32_t most = o->frames ? ADCGS_MIN(o->frames, ADCGS_MATCHING_FRAMES_MAX) : ADCGS_MATCHING_FRAMES_MAX;
     const uint32_t frames = ADCGS_MAX(2, ADCGS_MIN(scene->n_times, known ? most : ADCGS_MATCHING_FRAMES_MAX));
-    adcgs_status status = alloc_tracks(t, known ? TRACKS_MAX : CAPACITY, frames, error);
-    for (uint32_t i = 0; status == ADCGS_OK && i < frames; i++)
+    ADCGS_TRY(alloc_tracks(t, known ? TRACKS_MAX : CAPACITY, frames, error));
+    for (uint32_t i = 0; i < frames; i++)
         t->time[i] = (float)i / (float)(frames - 1);
-    if (status == ADCGS_OK)
-        status = known ? follow_rows(t, scene, o, error) : match_frames(t, scene, o, error);
+    return known ? follow_rows(t, scene, o, error) : match_frames(t, scene, o, error);
+}
+
+adcgs_status adcgs_splat_tracks_find(adcgs_splat_tracks *t, const adcgs_scene *scene, const adcgs_stereo_options *o,
+                                     adcgs_error *error)
+{
+    const adcgs_status status = scene->splats->dynamic ? follow(t, scene, o, error) : stand(t, scene, o, error);
     if (status != ADCGS_OK)
         adcgs_splat_tracks_clear(t);
     return status;

@@ -15,7 +15,7 @@ typedef struct adcgs_splat_tracks {
     float (*x)[3];       /**< scene units, where the track is visible */
     uint8_t *is_visible; /**< 1: the splat exists there, with an opacity of at least 0.1 */
     float (*rgb)[3];     /**< [n] */
-    float *size;         /**< [n] largest standard deviation, scene units */
+    float (*extent)[3];  /**< [n] standard deviations along the axes, scene units */
 } adcgs_splat_tracks;
 
 /** Follows a selection of the scene's splats. origin and scale: of scene units. */

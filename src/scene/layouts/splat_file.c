@@ -275,6 +275,7 @@ static adcgs_status read_static(adcgs_scene *scene, int want_points, const char 
     }
     sample_clear(&m);
     ADCGS_TRY(status);
+    s->gives_points = want_points;
     if (want_points)
         ADCGS_TRY(take_points(&scene->points, &s->splats, path, error));
     adcgs_splat_scene_normalise(s, &s->splats);

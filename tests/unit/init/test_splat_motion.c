@@ -67,9 +67,44 @@ static void test_varying(void **state)
     finish(&found);
 }
 
+/** Two groups of ten splats, the second turned by a right angle; two points have the means and deviations of the groups. */
+static void test_static(void **state)
+{
+    char text[4096] = "ply\nformat ascii 1.0\nelement vertex 20\n";
+    const char *const names[] = {"x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
+                                 "scale_0", "scale_1", "scale_2", "rot_0",  "rot_1",  "rot_2",  "rot_3"};
+    size_t n = strlen(text);
+    for (int i = 0; i < 14; i++)
+        n += (size_t)snprintf(text + n, sizeof text - n, "property float %s\n", names[i]);
+    n += (size_t)snprintf(text + n, sizeof text - n, "end_header\n");
+    for (int i = 0; i < 20; i++)
+        n += (size_t)snprintf(text + n, sizeof text - n, "%g 0 0 %d 0 0 2 -2.3025851 -2.9957323 -3.912023 1 0 0 %d\n",
+                              (i < 10 ? 0 : 5) + 0.02 * (i % 10) - 0.09, i < 10, i >= 10);
+    put_text("groups.ply", text);
+    assert_int_equal(adcgs_scene_open(&scene, in("groups.ply"), NULL, &error), ADCGS_OK);
+    adcgs_stereo found = {.n_still = 0};
+    const adcgs_stereo_options options = {.scale = 2.0, .still = 2};
+    assert_true(adcgs_splat_motion_applies(scene));
+    assert_int_equal(adcgs_splat_motion_find(&found, scene, &options, &error), ADCGS_OK);
+    assert_int_equal(found.n_still, 2);
+    assert_int_equal(found.n_moving, 0);
+    for (int i = 0; i < 2; i++) {
+        const float extent[3] = {i ? 0.025f : 0.05f, i ? 0.05f : 0.025f, 0.01f};
+        const double x[3] = {i ? 2.5 : 0.0, 0.0, 0.0};
+        for (int a = 0; a < 3; a++) {
+            assert_true(fabs(found.still[i].x[a] - x[a]) < 1e-5);
+            assert_true(fabsf(found.still[i].extent[a] - extent[a]) < 1e-5f);
+            assert_true(fabsf(found.still[i].spread[a] - fmaxf(extent[a], a ? 0.0f : 0.0287228f)) < 1e-5f);
+        }
+        assert_true(fabsf(found.still[i].rgb[0] - (i ? 0.5f : 0.782095f)) < 1e-4f);
+    }
+    finish(&found);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_static),
         cmocka_unit_test(test_identity),
         cmocka_unit_test(test_rows),
         cmocka_unit_test(test_varying),

@@ -84,7 +84,7 @@ static void given_values_stay(void **state)
     adcgs_resolve_size(&c, 3);
     assert_false(adcgs_resolve_wants_details(&c));
     adcgs_resolve_anchors(&c, 1000000);
-    adcgs_resolve_start(&c);
+    adcgs_resolve_start(&c, 0);
     assert_true(adcgs_resolve_contrast(&c, 0.5) == 2);
     assert_true(c.params.smooth_time == 1 && c.rigidity_weight == 0.5f && c.scale_reg_start == 0.1f && c.scale == 1);
     assert_true(c.max_anchors == 77 && c.start_anchors == 7);
@@ -104,7 +104,7 @@ static void anchors_follow_details(void **state)
     expect_record(&c, "max_anchors", 6000, 100, "scene"); /* the minimum; the request is still known */
     expect_record(&c, "start_anchors", 1000, 100, "scene");
     c = request("");
-    adcgs_resolve_start(&c);
+    adcgs_resolve_start(&c, 0);
     expect_record(&c, "start_anchors", 1000, 4500, "scene");
     assert_true(adcgs_resolve_contrast(&c, 0.5) == 0.5 * (double)0.1f && c.lambda == 0.1f); /* the trainer has its own lambda */
     assert_non_null(find(&c, "lambda"));
